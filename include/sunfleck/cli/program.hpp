@@ -1,0 +1,10 @@
+// The command line program: parses, calls the library, maps errors to exit codes.
+#pragma once
+
+namespace sunfleck {
+
+/// Exit codes: 0 done, 1 output could not be written or another failure, 2 bad usage or bad input, 3 did not converge (the
+/// result is written), 4 stopped.
+int run_program(int argc, char** argv);
+
+}  // namespace sunfleck

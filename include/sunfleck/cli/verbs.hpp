@@ -1,0 +1,67 @@
+// One struct of options and one function per verb; program.cpp parses into the structs, verb_NAME.cpp does the work.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <sunfleck/core/progress.hpp>
+
+namespace sunfleck {
+
+struct SolveOptions {
+  std::string scene, result;
+  std::optional<std::string> method, quality;
+  std::optional<double> error;            ///< wanted error, per organ, fraction
+  std::optional<std::uint64_t> seed;
+  std::optional<std::uint32_t> samples;   ///< reference method, per facet
+  int threads = 0;
+  bool certificate = true;
+};
+int verb_solve(const SolveOptions& options, Progress& progress);
+
+struct PlanOptions {
+  std::string scene;
+  std::optional<std::string> method, quality;
+  bool json = false;
+};
+int verb_plan(const PlanOptions& options, Progress& progress);
+
+struct CompareOptions {
+  std::string result, reference;
+  bool json = false;
+};
+int verb_compare(const CompareOptions& options, Progress& progress);
+
+struct ExportOptions {
+  std::string result, output;
+  std::optional<std::string> quantity, band, state;
+};
+int verb_export(const ExportOptions& options, Progress& progress);
+
+struct RenderOptions {
+  std::string result, output;
+  std::optional<std::string> quantity, band, state, colormap;  ///< quantity: "colour" or a stored quantity
+  std::vector<double> eye, target;      ///< empty = frames the scene
+  std::optional<double> azimuth_deg, elevation_deg, field_of_view_deg;
+  std::vector<double> range;            ///< low, high; empty = from the data
+  int width = 1200, height = 900, samples = 9;
+  bool logarithmic = false, ground = true;
+};
+int verb_render(const RenderOptions& options, Progress& progress);
+
+struct GenerateOptions {
+  std::string species, output;
+  std::optional<double> age;
+  std::optional<std::uint64_t> seed;
+};
+int verb_generate(const GenerateOptions& options, Progress& progress);
+
+struct InfoOptions {
+  std::string file;
+  bool json = false;
+};
+int verb_info(const InfoOptions& options, Progress& progress);
+
+}  // namespace sunfleck

@@ -1,0 +1,32 @@
+// The sun as a disc, and its position from time and place.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <sunfleck/core/vector.hpp>
+
+namespace sunfleck {
+
+/// The sun's beam. Absent where it is below the horizon.
+struct Sun {
+  Vec3 direction{0, 0, 1};        ///< unit vector towards the centre of the disc, z up, x east, y north
+  std::vector<double> irradiance; ///< per band, on a plane that faces the sun [W m^-2]
+  double angular_diameter_deg = 0.53;  ///< 0 = a point
+};
+
+/// Unit vector towards the sun from its elevation above the horizon and its azimuth from north over east [degrees].
+Vec3 direction_from_angles(double elevation_deg, double azimuth_deg);
+
+struct SolarPosition {
+  double elevation_deg;  ///< topocentric, without refraction
+  double azimuth_deg;    ///< from north over east
+};
+
+/// Position of the sun for an ISO 8601 time with zone ("2026-06-21T09:00:00+02:00", "…Z") at a place on Earth; latitude north
+/// and longitude east positive [degrees]. NREL SPA (Reda & Andreas 2004, doi:10.1016/j.solener.2003.12.003), better than
+/// 0.01 degrees from -2000 to 6000. Throws InputError(where ...) for a malformed time or a place that does not exist.
+SolarPosition solar_position(const std::string& iso_time, double latitude_deg, double longitude_deg, double altitude_m,
+                             const std::string& where);
+
+}  // namespace sunfleck

@@ -1,0 +1,101 @@
+// A scene as its user describes it: bands, light, optics, ground, plants and how they are placed.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <sunfleck/light/state.hpp>
+#include <sunfleck/plant/optics.hpp>
+#include <sunfleck/plant/plant.hpp>
+
+namespace sunfleck {
+
+/// The cell that repeats without end in x and y [m].
+struct PeriodicCell {
+  double x_low = 0, y_low = 0, x_high = 1, y_high = 1;
+  double width() const { return x_high - x_low; }
+  double depth() const { return y_high - y_low; }
+  double area() const { return width() * depth(); }
+};
+
+/// Lambertian ground: rows of cells along x from the lowest x and y, two facets a cell, front upwards; or a mesh.
+struct Ground {
+  std::array<double, 2> size{1, 1};    ///< [m]
+  std::array<double, 2> centre{0, 0};  ///< [m]
+  std::array<std::uint32_t, 2> cells{1, 1};
+  double height = 0.0;                 ///< [m]
+  std::optional<Mesh> mesh;            ///< takes the place of size, centre, cells, height
+  Optics optics;                       ///< reflectance_front = reflectance_back, transmittance 0
+};
+
+/// A copy of a plant or group: local frame -> frame of what holds it.
+struct Placement {
+  Affine map;
+};
+
+/// A plant of the scene; `plant` is shared where two entries read the same file with the same unit.
+struct PlantEntry {
+  std::string name;
+  std::shared_ptr<const Plant> plant;              ///< lengths in metres
+  std::vector<std::uint32_t> shape_optics;         ///< per shape of the plant, row of Scene::optics
+  std::string policy_file;                         ///< empty = none
+  std::vector<Placement> placements;               ///< in the world
+};
+
+/// A structure made of plants or other groups.
+struct GroupEntry {
+  struct Member {
+    bool is_group = false;
+    std::uint32_t index = 0;  ///< row of Scene::plants or Scene::groups (a group of lower row or any, never a cycle)
+    Placement placement;
+  };
+  std::string name;
+  std::vector<Member> members;
+  std::vector<Placement> placements;  ///< in the world
+};
+
+/// What the result file keeps.
+struct OutputChoice {
+  bool facets = true;                ///< false keeps organs only
+  std::vector<std::string> fields;   ///< dataset names as in the result ("facets/irradiance"); empty = all
+};
+
+enum class Quality { draft, standard, fine };
+
+/// The scene's own [solve] table; the command line takes precedence.
+struct SolveChoice {
+  std::optional<Quality> quality;
+  std::optional<std::string> method;
+  std::optional<std::uint64_t> seed;
+  std::optional<bool> certificate;
+  std::optional<std::uint32_t> samples;  ///< reference method: per facet
+};
+
+struct Scene {
+  std::string file;    ///< empty if built in memory
+  std::string text;    ///< TOML as read
+  std::vector<std::string> bands;
+  std::vector<std::string> band_units;  ///< per band: "W m^-2" or "umol m^-2 s^-1"
+  std::optional<PeriodicCell> periodic;
+  std::vector<LightState> states;       ///< at least one
+  std::vector<Optics> optics;           ///< of plants
+  std::optional<Ground> ground;
+  std::vector<PlantEntry> plants;
+  std::vector<GroupEntry> groups;
+  OutputChoice output;
+  SolveChoice solve;
+  std::vector<std::string> notes;       ///< what the reader wants the user to know ("sun below the horizon in state ...")
+
+  std::size_t band_count() const { return bands.size(); }
+};
+
+/// Physics at the door, for scenes read or built in memory: at least one band and state, finite and non-negative irradiances,
+/// rho + tau <= 1, finite vertices, no cycle among groups, ground that fills a periodic cell. Throws InputError.
+void check_scene(const Scene& scene);
+
+}  // namespace sunfleck

@@ -1,0 +1,74 @@
+// What every method hands over: irradiance rows to a sink, and a report.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <sunfleck/core/timer.hpp>
+
+namespace sunfleck {
+
+/// Irradiance of consecutive facets under all lighting states. s states, b bands, `count` facets.
+struct IrradianceRows {
+  std::size_t first_facet = 0;
+  std::size_t count = 0;
+  const float* irradiance = nullptr;  ///< [s][count][2][b] front, back [W m^-2], all light: direct and scattered
+  const float* sunlit = nullptr;      ///< [s][count][2] fraction of the side that the sun reaches [-]; null without sun in any state
+  const float* variance_of_absorbed = nullptr;  ///< [s][count][b] of the mean of absorbed [(W m^-2)^2]; reference method only
+};
+
+/// Per organ, for the reference method, whose facets within an organ are correlated: variance of the mean of the organ's
+/// absorbed power [W^2].
+struct OrganVariance {
+  std::vector<float> absorbed;  ///< [s][m][b]; empty for other methods
+};
+
+/// Receives finished rows; called from one thread at a time, rows in rising order without gaps.
+class IrradianceSink {
+ public:
+  virtual ~IrradianceSink() = default;
+  virtual void rows(const IrradianceRows& rows) = 0;
+};
+
+/// Power balance of one state and band [W]; of one cell where the scene is periodic.
+/// incident = leaves + ground + escaped + residual.
+struct Balance {
+  double incident = 0;  ///< direct light that facets and ground meet first
+  double leaves = 0;    ///< absorbed by plant facets
+  double ground = 0;    ///< absorbed by the ground
+  double escaped = 0;   ///< scattered light that leaves the scene
+  double residual() const { return incident - leaves - ground - escaped; }
+};
+
+struct IterationRow {
+  std::uint32_t level = 0;
+  std::uint32_t iteration = 0;
+  double residual = 0;   ///< ||E0 + F R E - E|| / ||E0||, true residual, worst band and state
+  std::uint64_t links = 0;
+  double seconds = 0;
+};
+
+enum class SolveStatus { converged, not_converged };
+
+/// What a method did.
+struct SolveReport {
+  std::string method;
+  SolveStatus status = SolveStatus::converged;
+  std::vector<std::vector<Balance>> balance;  ///< [s][b]
+  std::vector<IterationRow> convergence;
+  std::vector<std::pair<std::string, std::uint64_t>> counts;  ///< deterministic work: "links", "fragments", "directions", "rays"
+  std::vector<std::pair<std::string, std::uint64_t>> memory;  ///< bytes held per phase, counted by the program
+  Timings timings;
+  OrganVariance organ_variance;
+};
+
+/// Settings shared by all methods.
+struct SolveSettings {
+  std::uint64_t seed = 1;
+  int threads = 0;        ///< 0 = all cores
+  double tolerance = 0;   ///< relative true residual; 0 = the quality's own
+};
+
+}  // namespace sunfleck
