@@ -1,0 +1,34 @@
+#include <sunfleck/format/read_plant.hpp>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <filesystem>
+
+#include <fmt/format.h>
+
+#include <format/text.hpp>
+#include <sunfleck/core/error.hpp>
+
+namespace sunfleck {
+
+namespace {
+
+Plant read_by_suffix(const std::string& file) {
+  std::string suffix = std::filesystem::path(file).extension().string();
+  std::transform(suffix.begin(), suffix.end(), suffix.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  if (suffix == ".obj") return read_obj(file);
+  throw InputError(file, suffix.empty() ? "no suffix" : "suffix " + in_quotes(suffix), ".obj");
+}
+
+}  // namespace
+
+Plant read_plant(const std::string& file, double unit_m) {
+  if (!std::isfinite(unit_m) || unit_m <= 0) throw InputError(file, fmt::format("unit of {} m", unit_m), "a length above zero");
+  check_readable(file);
+  Plant plant = read_by_suffix(file);
+  if (unit_m != 1.0) plant.scale_lengths(unit_m);
+  return plant;
+}
+
+}  // namespace sunfleck

@@ -1,0 +1,122 @@
+#include <format/text.hpp>
+
+#include <charconv>
+#include <filesystem>
+#include <fstream>
+
+#include <fmt/format.h>
+
+#include <sunfleck/core/error.hpp>
+
+namespace sunfleck {
+
+namespace {
+
+constexpr std::string_view blanks = " \t\r\f\v";
+
+}  // namespace
+
+void check_readable(const std::string& file) {
+  std::error_code error;
+  const auto status = std::filesystem::status(file, error);
+  if (!std::filesystem::exists(status)) throw InputError(file, "no such file", "an existing file");
+  if (std::filesystem::is_directory(status)) throw InputError(file, "a folder", "a file");
+}
+
+std::string read_whole(const std::string& file) {
+  check_readable(file);
+  std::ifstream in(file, std::ios::binary);
+  if (!in) throw InputError(file, "a file that cannot be opened", "permission to read it");
+  std::string bytes;
+  std::error_code error;
+  const auto size = std::filesystem::file_size(file, error);
+  if (!error && size > 0) {
+    bytes.resize(size);
+    in.read(bytes.data(), static_cast<std::streamsize>(size));
+    bytes.resize(static_cast<std::size_t>(in.gcount()));
+  } else {  // a pipe has no size
+    bytes.assign(std::istreambuf_iterator<char>(in), {});
+  }
+  if (in.bad()) throw InputError(file, "a read error", "a readable file");
+  return bytes;
+}
+
+bool Lines::raw(std::string_view& line) {
+  if (at_ >= text_.size()) return false;
+  const std::size_t end = text_.find('\n', at_);
+  line = text_.substr(at_, end == std::string_view::npos ? end : end - at_);
+  at_ = end == std::string_view::npos ? text_.size() : end + 1;
+  if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
+  ++line_;
+  return true;
+}
+
+bool Lines::next(std::string_view& line) {
+  if (!raw(line)) return false;
+  first_ = line_;
+  if (!join_ || line.empty() || line.back() != '\\') return true;
+  joined_.clear();
+  do {
+    line.remove_suffix(1);
+    joined_.append(line).push_back(' ');
+    if (!raw(line)) line = {};
+  } while (!line.empty() && line.back() == '\\');
+  joined_.append(line);
+  line = joined_;
+  return true;
+}
+
+std::string_view Words::next() {
+  const std::size_t begin = rest_.find_first_not_of(blanks);
+  if (begin == std::string_view::npos) return rest_ = {};
+  rest_.remove_prefix(begin);
+  const std::string_view word = rest_.substr(0, rest_.find_first_of(blanks));
+  rest_.remove_prefix(word.size());
+  return word;
+}
+
+std::string_view Words::rest() {
+  const std::size_t begin = rest_.find_first_not_of(blanks);
+  if (begin == std::string_view::npos) return rest_ = {};
+  return rest_.substr(begin, rest_.find_last_not_of(blanks) + 1 - begin);
+}
+
+bool to_number(std::string_view word, double& value) {
+  if (word.starts_with('+')) word.remove_prefix(1);
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  if (error == std::errc::result_out_of_range) {  // 1e-400 is as good as zero, 1e400 is no length
+    const bool tiny = word.find("e-") != std::string_view::npos || word.find("E-") != std::string_view::npos;
+    value = tiny ? 0.0 : std::numeric_limits<double>::infinity();
+  } else if (error != std::errc{}) {
+    return false;
+  }
+  return end == word.data() + word.size();
+}
+
+bool to_integer(std::string_view word, std::int64_t& value) {
+  if (word.starts_with('+')) word.remove_prefix(1);
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  return error == std::errc{} && end == word.data() + word.size();
+}
+
+Vec3 read_point(Words& words, const std::string& file, long line, const char* what) {
+  Vec3 p;
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::string_view word = words.next();
+    double value = 0;
+    if (word.empty()) throw InputError(location(file, line), fmt::format("{} with {} coordinates", what, axis), "three numbers");
+    if (!to_number(word, value) || !std::isfinite(value))
+      throw InputError(location(file, line), fmt::format("{} coordinate {}", what, in_quotes(word)), "a finite number");
+    p[axis] = value;
+  }
+  return p;
+}
+
+std::string in_quotes(std::string_view word) {
+  constexpr std::size_t longest = 40;
+  std::string text = "\"";
+  for (const char c : word.substr(0, longest)) text += static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? '?' : c;
+  return text + (word.size() > longest ? "...\"" : "\"");
+}
+
+}  // namespace sunfleck

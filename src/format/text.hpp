@@ -1,0 +1,59 @@
+// Text files read whole and cut into lines and words, with the line number at hand for messages.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include <sunfleck/core/vector.hpp>
+
+namespace sunfleck {
+
+/// The bytes of a file. InputError if it is missing, a folder, or cannot be read.
+std::string read_whole(const std::string& file);
+
+/// InputError unless the file exists and is not a folder.
+void check_readable(const std::string& file);
+
+/// Lines of a text, without "\n" or "\r\n"; a line that ends with a backslash goes on in the next one if asked.
+class Lines {
+ public:
+  explicit Lines(std::string_view text, bool join_continued = false) : text_(text), join_(join_continued) {}
+  bool next(std::string_view& line);
+  /// Number of the (first part of the) line last returned, from 1.
+  long number() const { return first_; }
+  /// Bytes consumed so far.
+  std::size_t offset() const { return at_; }
+
+ private:
+  bool raw(std::string_view& line);
+  std::string_view text_;
+  std::size_t at_ = 0;
+  long line_ = 0, first_ = 0;
+  bool join_;
+  std::string joined_;
+};
+
+/// Words of a line, separated by blanks; empty when there are no more.
+class Words {
+ public:
+  explicit Words(std::string_view line) : rest_(line) {}
+  std::string_view next();
+  /// All that is left, without blanks around it.
+  std::string_view rest();
+
+ private:
+  std::string_view rest_;
+};
+
+/// The whole word as a number, rounded correctly; "nan" and "inf" are numbers here. False if it is none.
+bool to_number(std::string_view word, double& value);
+bool to_integer(std::string_view word, std::int64_t& value);
+
+/// Three finite coordinates from the next words, or InputError for that line.
+Vec3 read_point(Words& words, const std::string& file, long line, const char* what);
+
+/// "\"word\"" for messages, shortened where it is long and with control characters replaced.
+std::string in_quotes(std::string_view word);
+
+}  // namespace sunfleck
