@@ -1,0 +1,148 @@
+// Parses the command line (the only translation unit that pays for CLI11), runs a verb, maps errors to exit codes.
+#include <sunfleck/cli/program.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <exception>
+#include <functional>
+#include <limits>
+#include <new>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <sunfleck/cli/verbs.hpp>
+#include <sunfleck/core/error.hpp>
+#include <sunfleck/core/names.hpp>
+#include <sunfleck/core/version.hpp>
+
+#include "cli/terminal_progress.hpp"
+
+namespace sunfleck {
+
+namespace {
+
+enum ExitCode { done = 0, failed = 1, bad_input = 2, stopped = 4 };  // 3, not converged, is a verb's own answer
+
+/// Options and what runs them, one per verb.
+struct Verbs {
+  SolveOptions solve;
+  PlanOptions plan;
+  CompareOptions compare;
+  ExportOptions exporting;
+  RenderOptions render;
+  GenerateOptions generate;
+  InfoOptions info;
+};
+
+std::string hint(const std::string& found, const std::vector<std::string>& known) {
+  const std::string near = nearest_name(found, known);
+  return near.empty() ? "" : "; did you mean '" + near + "'?";
+}
+
+/// Options of a verb by their long names.
+std::vector<std::string> option_names(const CLI::App& verb) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : verb.get_options())
+    for (const auto& name : option->get_lnames()) names.push_back("--" + name);
+  return names;
+}
+
+class Program {
+ public:
+  Program() {
+    app_.set_version_flag("--version", "sunfleck " + software_version(), "print the version and exit");
+    app_.require_subcommand(1);
+    app_.set_help_flag("-h,--help", "print this help and exit");
+    app_.footer(
+        "Each verb has its own help: sunfleck VERB --help. Data go to standard output, progress and messages to standard error.\n"
+        "Exit codes: 0 done, 1 output failed, 2 bad usage or input, 3 did not converge (the result is written), 4 stopped.");
+  }
+
+  int run(int argc, char** argv) {
+    if (argc < 2) {
+      fmt::print(stderr, "{}", app_.help());
+      return bad_input;
+    }
+    if (argv[1][0] != '-' && std::find(names_.begin(), names_.end(), argv[1]) == names_.end()) {
+      fmt::print(stderr, "sunfleck: unknown verb '{}'{}\nverbs: {}\n", argv[1], hint(argv[1], names_), joined(names_));
+      return bad_input;
+    }
+    try {
+      app_.parse(argc, argv);
+    } catch (const CLI::ExtrasError&) {
+      return report_extras();
+    } catch (const CLI::ParseError& error) {
+      if (error.get_exit_code() == 0) return app_.exit(error);  // help or version, on standard output
+      fmt::print(stderr, "sunfleck{}: {}\nsee 'sunfleck{} --help'\n", verb_suffix(), error.what(), verb_suffix());
+      return bad_input;
+    }
+    TerminalProgress progress;
+    for (const auto& [verb, work] : work_)
+      if (verb->parsed()) return work(progress);
+    return bad_input;
+  }
+
+ private:
+  template <class Options>
+  void add(const std::string& name, const std::string& text, void (*declare)(CLI::App&, Options&), Options& options,
+           int (*work)(const Options&, Progress&)) {
+    CLI::App* verb = app_.add_subcommand(name, text);
+    verb->set_help_flag("-h,--help", "print this help and exit");
+    declare(*verb, options);
+    work_.emplace_back(verb, [work, &options](Progress& progress) { return work(options, progress); });
+    names_.push_back(name);
+  }
+
+  const CLI::App* chosen() const {
+    for (const auto& [verb, work] : work_)
+      if (verb->parsed()) return verb;
+    return nullptr;
+  }
+  std::string verb_suffix() const { return chosen() ? " " + chosen()->get_name() : ""; }
+
+  int report_extras() const {
+    const CLI::App* verb = chosen() ? chosen() : &app_;
+    std::string text;
+    for (const auto& extra : app_.remaining(true)) {
+      const bool option = extra.size() > 1 && extra[0] == '-';
+      text += fmt::format("sunfleck{}: {} '{}'{}\n", verb_suffix(), option ? "unknown option" : "unexpected argument", extra,
+                          option ? hint(extra.substr(0, extra.find('=')), option_names(*verb)) : "");
+    }
+    fmt::print(stderr, "{}see 'sunfleck{} --help'\n", text, verb_suffix());
+    return bad_input;
+  }
+
+  CLI::App app_{"Sunfleck: the light that every leaf of a plant, crop or forest absorbs", "sunfleck"};
+  Verbs verbs_;
+  std::vector<std::pair<CLI::App*, std::function<int(Progress&)>>> work_;
+  std::vector<std::string> names_;
+};
+
+}  // namespace
+
+int run_program(int argc, char** argv) {
+  try {
+    return Program().run(argc, argv);
+  } catch (const InputError& error) {
+    fmt::print(stderr, "sunfleck: {}\n", error.what());
+    return bad_input;
+  } catch (const UsageError& error) {
+    fmt::print(stderr, "sunfleck: {}\n", error.what());
+    return bad_input;
+  } catch (const Stopped& error) {
+    fmt::print(stderr, "sunfleck: {}\n", error.what());
+    return stopped;
+  } catch (const std::bad_alloc&) {
+    fmt::print(stderr, "sunfleck: not enough memory; 'sunfleck plan' predicts what a scene needs\n");
+    return failed;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "sunfleck: {}\n", error.what());
+    return failed;
+  }
+}
+
+}  // namespace sunfleck

@@ -1,0 +1,81 @@
+#include "cli/terminal_progress.hpp"
+
+#include <csignal>
+#include <cstdio>
+
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <string>
+
+#include <fmt/format.h>
+
+namespace sunfleck {
+
+namespace {
+
+volatile std::sig_atomic_t stop_asked = 0;
+
+extern "C" void ask_to_stop(int) {
+  stop_asked = 1;
+}
+
+void on_signal(int signal) {
+  struct sigaction action {};
+  action.sa_handler = ask_to_stop;
+  action.sa_flags = static_cast<int>(SA_RESETHAND | SA_RESTART);  // the second one meets the default action and kills
+  sigemptyset(&action.sa_mask);
+  sigaction(signal, &action, nullptr);
+}
+
+int terminal_columns() {
+  winsize size{};
+  return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
+}
+
+constexpr std::chrono::milliseconds redraw_interval{500};
+
+}  // namespace
+
+TerminalProgress::TerminalProgress() : terminal_(isatty(STDERR_FILENO) == 1) {
+  on_signal(SIGINT);
+  on_signal(SIGTERM);
+}
+
+TerminalProgress::~TerminalProgress() {
+  clear_bar();
+}
+
+void TerminalProgress::line(std::string_view text) {
+  clear_bar();
+  fmt::print(stderr, "{}\n", text);
+  std::fflush(stderr);
+}
+
+void TerminalProgress::fraction(std::string_view phase, double done) {
+  if (!terminal_) return;
+  const auto now = std::chrono::steady_clock::now();
+  if (now - last_drawn_ < redraw_interval) return;
+  last_drawn_ = now;
+  const int width = std::clamp(terminal_columns() - static_cast<int>(phase.size()) - 10, 10, 40);
+  const double part = std::clamp(done, 0.0, 1.0);
+  const int filled = static_cast<int>(part * width);
+  fmt::print(stderr, "\r\033[K{} [{}{}] {:3.0f} %", phase, std::string(static_cast<std::size_t>(filled), '#'),
+             std::string(static_cast<std::size_t>(width - filled), '.'), 100.0 * part);
+  std::fflush(stderr);
+  bar_shown_ = true;
+}
+
+bool TerminalProgress::cancelled() const {
+  return stop_asked != 0;
+}
+
+void TerminalProgress::clear_bar() {
+  if (!bar_shown_) return;
+  std::fputs("\r\033[K", stderr);
+  std::fflush(stderr);
+  bar_shown_ = false;
+}
+
+}  // namespace sunfleck

@@ -1,0 +1,32 @@
+// Progress on a terminal or in a log: lasting lines on stderr, a bar on terminals only, signals as cancellation.
+#pragma once
+
+#include <chrono>
+#include <string>
+#include <string_view>
+
+#include <sunfleck/core/progress.hpp>
+
+namespace sunfleck {
+
+/// From construction on SIGINT and SIGTERM ask for an orderly stop (cancelled() turns true); a second signal kills at once.
+class TerminalProgress : public Progress {
+ public:
+  TerminalProgress();
+  ~TerminalProgress() override;
+  TerminalProgress(const TerminalProgress&) = delete;
+  TerminalProgress& operator=(const TerminalProgress&) = delete;
+
+  void line(std::string_view text) override;
+  void fraction(std::string_view phase, double done) override;
+  bool cancelled() const override;
+
+ private:
+  void clear_bar();
+
+  bool terminal_;
+  bool bar_shown_ = false;
+  std::chrono::steady_clock::time_point last_drawn_{};
+};
+
+}  // namespace sunfleck
