@@ -17,8 +17,9 @@ namespace {
 Plant read_by_suffix(const std::string& file) {
   std::string suffix = std::filesystem::path(file).extension().string();
   std::transform(suffix.begin(), suffix.end(), suffix.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  if (suffix == ".opf") return read_opf(file);
   if (suffix == ".obj") return read_obj(file);
-  throw InputError(file, suffix.empty() ? "no suffix" : "suffix " + in_quotes(suffix), ".obj");
+  throw InputError(file, suffix.empty() ? "no suffix" : "suffix " + in_quotes(suffix), ".opf or .obj");
 }
 
 }  // namespace
