@@ -1,0 +1,24 @@
+// Sizes of a scene, known before any copy is written out.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <sunfleck/scene/scene.hpp>
+
+namespace sunfleck {
+
+struct SceneCounts {
+  std::vector<std::uint64_t> copies;  ///< per row of Scene::plants: placed copies, through groups of any depth
+  std::uint64_t plant_facets = 0;     ///< of all copies
+  std::uint64_t unique_facets = 0;    ///< of plants that are placed at least once, each counted once
+  std::uint64_t ground_facets = 0;
+  std::uint64_t organs = 0;  ///< structures with shapes in all copies, and the rows that the ground has
+  double leaf_area = 0;      ///< one-sided area of all plant facets, without the scales of placements [m^2]
+  std::uint64_t facets() const { return plant_facets + ground_facets; }
+};
+
+/// The scene must have passed check_scene() (no cycle among groups).
+SceneCounts count(const Scene& scene);
+
+}  // namespace sunfleck

@@ -1,0 +1,72 @@
+#include "cli/method_choice.hpp"
+
+#include <array>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include <sunfleck/core/error.hpp>
+#include <sunfleck/core/names.hpp>
+
+namespace sunfleck {
+
+namespace {
+
+const std::vector<std::string> methods{"clustering", "flat", "direct", "reference"};
+
+/// What each quality keeps, rms over organs in the worst (near-infrared) band: docs/accuracy.md.
+struct Kept {
+  Quality quality;
+  double error;
+};
+constexpr std::array<Kept, 3> kept{{{Quality::draft, 0.06}, {Quality::standard, 0.02}, {Quality::fine, 0.012}}};
+
+std::string checked_method(const std::string& name) {
+  for (const auto& known : methods)
+    if (name == known) return name;
+  const std::string near = nearest_name(name, methods);
+  throw UsageError(fmt::format("method: found '{}'; expected one of {}{}", name, joined(methods),
+                               near.empty() ? "" : " (did you mean '" + near + "'?)"));
+}
+
+Quality quality_for_error(double error) {
+  for (const auto& [quality, reached] : kept)
+    if (reached <= error) return quality;
+  throw UsageError(
+      fmt::format("--error: found {}; expected at least {}, what 'fine' keeps (for less: --method reference)", error, kept.back().error));
+}
+
+Quality quality_from_name(const std::string& name) {
+  for (const auto& known : kept)
+    if (name == name_of(known.quality)) return known.quality;
+  throw UsageError(fmt::format("--quality: found '{}'; expected one of draft, standard, fine", name));
+}
+
+}  // namespace
+
+std::string name_of(Quality quality) {
+  switch (quality) {
+    case Quality::draft:
+      return "draft";
+    case Quality::standard:
+      return "standard";
+    case Quality::fine:
+      return "fine";
+  }
+  return {};
+}
+
+MethodChoice choose_method(const std::optional<std::string>& method, const std::optional<std::string>& quality,
+                           const std::optional<double>& error, const SolveChoice& scene) {
+  MethodChoice choice;
+  choice.method = checked_method(method ? *method : scene.method.value_or(methods.front()));
+  if (quality)
+    choice.quality = quality_from_name(*quality);
+  else if (error)
+    choice.quality = quality_for_error(*error);
+  else
+    choice.quality = scene.quality.value_or(Quality::standard);
+  return choice;
+}
+
+}  // namespace sunfleck

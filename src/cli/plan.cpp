@@ -1,0 +1,155 @@
+#include "cli/plan.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include <sunfleck/core/names.hpp>
+#include <sunfleck/scene/facets.hpp>
+
+#include "cli/text_units.hpp"
+
+namespace sunfleck {
+
+namespace {
+
+/// Bytes of one row of an expanded scene: its own arrays, and irradiance and sunlit fraction of both sides under every state.
+std::uint64_t expanded_bytes_per_facet() {
+  return sizeof(Triangle) + sizeof(float) + 2 * sizeof(std::uint32_t);
+}
+std::uint64_t solution_bytes_per_facet(const Scene& scene) {
+  return scene.states.size() * 2 * (scene.band_count() + 1) * sizeof(float);
+}
+/// Bytes of one row of a result before compression: irradiance, absorbed, sunlit, area, centroid, organ.
+std::uint64_t result_bytes_per_facet(const Scene& scene) {
+  return scene.states.size() * (3 * scene.band_count() + 2) * sizeof(float) + sizeof(float) + 3 * sizeof(double) + sizeof(std::uint32_t);
+}
+
+std::uint64_t mesh_bytes(const Scene& scene) {
+  std::vector<const Plant*> seen;
+  std::uint64_t bytes = 0;
+  for (const auto& entry : scene.plants) {
+    if (std::find(seen.begin(), seen.end(), entry.plant.get()) != seen.end()) continue;
+    seen.push_back(entry.plant.get());
+    for (const auto& mesh : entry.plant->meshes)
+      bytes += mesh.vertices.size() * sizeof(Vec3) + mesh.triangles.size() * sizeof(mesh.triangles[0]);
+    bytes += entry.plant->structures.size() * sizeof(Structure) + entry.plant->shapes.size() * sizeof(Shape);
+  }
+  return bytes;
+}
+
+bool transmits(const Scene& scene) {
+  return std::any_of(scene.optics.begin(), scene.optics.end(), [](const Optics& o) {
+    return std::any_of(o.transmittance.begin(), o.transmittance.end(), [](float t) { return t > 0.0f; });
+  });
+}
+
+bool scatters(const Scene& scene) {
+  const auto positive = [](const std::vector<float>& values) {
+    return std::any_of(values.begin(), values.end(), [](float v) { return v > 0.0f; });
+  };
+  const auto any = [&](const Optics& o) {
+    return positive(o.reflectance_front) || positive(o.reflectance_back) || positive(o.transmittance);
+  };
+  return std::any_of(scene.optics.begin(), scene.optics.end(), any) || (scene.ground && any(scene.ground->optics));
+}
+
+/// Names of the states that have (or lack) a kind of light.
+template <class Has>
+PlanItem light_item(const Scene& scene, const std::string& name, Has has, const std::string& what) {
+  std::vector<std::string> with;
+  for (const auto& state : scene.states)
+    if (has(state)) with.push_back(state.name);
+  if (with.empty()) return {name, false, scene.states.size() == 1 ? "the scene has none" : "no state has any"};
+  if (with.size() == scene.states.size()) return {name, true, what};
+  return {name, true, fmt::format("{}; in {} of {} states", what, with.size(), scene.states.size())};
+}
+
+void add_light(const Scene& scene, std::vector<PlanItem>& items) {
+  items.push_back({"bands", true, fmt::format("{}, carried together through one geometric computation", joined(scene.bands))});
+  if (scene.states.size() > 1)
+    items.push_back(
+        {"states", true, fmt::format("{} lighting states; what does not depend on the light is done once", scene.states.size())});
+  else
+    items.push_back({"states", false, "one lighting state only: no loop over states"});
+  items.push_back(light_item(
+      scene, "sun", [](const LightState& s) { return s.sun.has_value(); }, "direct light, with the sunlit fraction of each side"));
+  bool disc = false;
+  for (const auto& state : scene.states) disc = disc || (state.sun && state.sun->angular_diameter_deg > 0.0);
+  items.push_back({"sun disc", disc, disc ? "penumbrae of the sun's angular diameter" : "no sun, or a point"});
+  items.push_back(light_item(
+      scene, "sky", [](const LightState& s) { return s.sky.has_value(); }, "sky light through the gaps, direction by direction"));
+}
+
+void add_geometry(const Scene& scene, const SceneCounts& counts, std::vector<PlanItem>& items) {
+  if (scene.periodic)
+    items.push_back({"periodicity", true,
+                     fmt::format("a cell of {:g} m x {:g} m repeats without end", scene.periodic->width(), scene.periodic->depth())});
+  else
+    items.push_back({"periodicity", false, "the scene is finite"});
+  if (scene.ground)
+    items.push_back({"ground", true, fmt::format("{} in the same system as the leaves", counted(counts.ground_facets, "facet", "facets"))});
+  else
+    items.push_back({"ground", false, "the scene has none: light that falls through escapes"});
+  if (counts.plant_facets > counts.unique_facets)
+    items.push_back({"copies", true,
+                     fmt::format("{} facets are read, {} stand in the scene: every copy is solved with its own light", counts.unique_facets,
+                                 counts.plant_facets)});
+  else
+    items.push_back({"copies", false, "nothing is placed more than once"});
+}
+
+void add_scattering(const Scene& scene, const std::string& method, std::vector<PlanItem>& items) {
+  const bool direct_only = method == "direct";
+  if (direct_only)
+    items.push_back({"scattering", false, "method 'direct' stops at the light that arrives first"});
+  else if (!scatters(scene))
+    items.push_back({"scattering", false, "every surface is black in every band"});
+  else if (method == "reference")
+    items.push_back({"scattering", true, "paths traced from facets, with the variance of every mean"});
+  else
+    items.push_back(
+        {"scattering", true,
+         method == "flat" ? "every facet with every other it sees" : "links between clusters, chosen by their estimated error"});
+  const bool passes = transmits(scene) && !direct_only;
+  items.push_back({"transmission", passes,
+                   passes        ? "leaves pass light from side to side"
+                   : direct_only ? "no scattering"
+                                 : "no optics transmits in any band"});
+}
+
+void add_certificate(const Scene& scene, const std::string& method, std::vector<PlanItem>& items) {
+  if (method == "reference")
+    items.push_back({"certificate", false, "the reference carries the variance of its own means"});
+  else if (scene.solve.certificate && !*scene.solve.certificate)
+    items.push_back({"certificate", false, "the scene turns it off"});
+  else
+    items.push_back({"certificate", true, "some organs are checked by path tracing after the solve"});
+}
+
+}  // namespace
+
+std::uint64_t Plan::memory_total() const {
+  std::uint64_t total = 0;
+  for (const auto& [part, bytes] : memory) total += bytes;
+  return total;
+}
+
+Plan make_plan(const Scene& scene, const MethodChoice& choice) {
+  Plan plan;
+  plan.choice = choice;
+  plan.counts = count(scene);
+  add_light(scene, plan.items);
+  add_geometry(scene, plan.counts, plan.items);
+  add_scattering(scene, choice.method, plan.items);
+  add_certificate(scene, choice.method, plan.items);
+  const std::uint64_t facets = plan.counts.facets();
+  plan.memory = {{"plants as read", mesh_bytes(scene)},
+                 {"facets of all copies", facets * expanded_bytes_per_facet()},
+                 {"light on every facet", facets * solution_bytes_per_facet(scene)}};
+  plan.work = {
+      {"facets", facets}, {"organs", plan.counts.organs}, {"result bytes before compression", facets * result_bytes_per_facet(scene)}};
+  return plan;
+}
+
+}  // namespace sunfleck

@@ -1,0 +1,71 @@
+#include <sunfleck/scene/counts.hpp>
+
+#include <unordered_set>
+
+namespace sunfleck {
+
+namespace {
+
+/// Copies per plant that one copy of a group holds; each group is worked out once, however often it is placed.
+class GroupContents {
+ public:
+  explicit GroupContents(const Scene& scene) : scene_(scene), known_(scene.groups.size()) {}
+
+  const std::vector<std::uint64_t>& of(std::uint32_t group) {
+    if (!known_[group].empty()) return known_[group];
+    std::vector<std::uint64_t> copies(scene_.plants.size(), 0);
+    for (const auto& member : scene_.groups[group].members) {
+      if (!member.is_group) {
+        ++copies[member.index];
+        continue;
+      }
+      const auto& inner = of(member.index);
+      for (std::size_t p = 0; p < copies.size(); ++p) copies[p] += inner[p];
+    }
+    return known_[group] = std::move(copies);
+  }
+
+ private:
+  const Scene& scene_;
+  std::vector<std::vector<std::uint64_t>> known_;
+};
+
+std::uint64_t ground_facets(const Scene& scene) {
+  if (!scene.ground) return 0;
+  if (scene.ground->mesh) return scene.ground->mesh->triangles.size();
+  return std::uint64_t{2} * scene.ground->cells[0] * scene.ground->cells[1];
+}
+
+std::uint64_t ground_organs(const Scene& scene) {
+  if (!scene.ground) return 0;
+  return scene.ground->mesh ? 1 : std::uint64_t{scene.ground->cells[0]} * scene.ground->cells[1];
+}
+
+}  // namespace
+
+SceneCounts count(const Scene& scene) {
+  SceneCounts counts;
+  GroupContents contents(scene);
+  for (const auto& entry : scene.plants) counts.copies.push_back(entry.placements.size());
+  for (std::uint32_t g = 0; g < scene.groups.size(); ++g)
+    if (const auto placed = scene.groups[g].placements.size(); placed > 0)
+      for (std::size_t p = 0; p < counts.copies.size(); ++p) counts.copies[p] += placed * contents.of(g)[p];
+
+  std::unordered_set<const Plant*> seen;
+  for (std::size_t p = 0; p < scene.plants.size(); ++p) {
+    if (counts.copies[p] == 0) continue;
+    const Plant& plant = *scene.plants[p].plant;
+    std::unordered_set<std::uint32_t> organs;
+    for (const auto& shape : plant.shapes) organs.insert(shape.structure);
+    const std::uint64_t facets = plant.facet_count();
+    counts.plant_facets += counts.copies[p] * facets;
+    counts.organs += counts.copies[p] * organs.size();
+    counts.leaf_area += static_cast<double>(counts.copies[p]) * plant.area();
+    if (seen.insert(&plant).second) counts.unique_facets += facets;
+  }
+  counts.ground_facets = ground_facets(scene);
+  counts.organs += ground_organs(scene);
+  return counts;
+}
+
+}  // namespace sunfleck
