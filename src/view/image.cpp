@@ -1,0 +1,67 @@
+#include <sunfleck/view/image.hpp>
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+
+#include <unistd.h>
+
+#define STBI_WRITE_NO_STDIO
+#include <stb_image_write.h>
+
+#include <fmt/core.h>
+
+#include <sunfleck/core/error.hpp>
+
+namespace sunfleck {
+
+Image::Image(int width, int height, Rgb8 fill_colour) : width_(width), height_(height) {
+  if (width < 1 || height < 1 || width > 32768 || height > 32768)
+    throw UsageError(fmt::format("picture size: found {} x {}; expected 1 to 32768 pixels each way", width, height));
+  pixels_.assign(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), fill_colour);
+}
+
+void Image::blend(int x, int y, const Rgb8& colour, double opacity) {
+  if (x < 0 || y < 0 || x >= width_ || y >= height_) return;
+  auto& p = at(x, y);
+  for (std::size_t c = 0; c < 3; ++c) p[c] = static_cast<std::uint8_t>(std::lround(p[c] + (colour[c] - p[c]) * std::clamp(opacity, 0.0, 1.0)));
+}
+
+void Image::fill(int x0, int y0, int x1, int y1, const Rgb8& colour, double opacity) {
+  for (int y = std::max(0, y0); y < std::min(height_, y1); ++y)
+    for (int x = std::max(0, x0); x < std::min(width_, x1); ++x) blend(x, y, colour, opacity);
+}
+
+void write_png(const Image& image, const std::string& file) {
+  std::string suffix = std::filesystem::path(file).extension().string();
+  std::transform(suffix.begin(), suffix.end(), suffix.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  if (suffix != ".png") throw UsageError(fmt::format("{}: found the suffix '{}'; expected .png", file, suffix));
+  if (std::filesystem::is_directory(file)) throw OutputError(fmt::format("{}: found a directory; expected a file name for the picture", file));
+
+  std::vector<unsigned char> bytes;
+  const auto append = [](void* context, void* data, int size) {
+    const auto* first = static_cast<const unsigned char*>(data);
+    auto& out = *static_cast<std::vector<unsigned char>*>(context);
+    out.insert(out.end(), first, first + size);
+  };
+  if (stbi_write_png_to_func(append, &bytes, image.width(), image.height(), 3, image.data(), image.width() * 3) == 0)
+    throw OutputError(fmt::format("{}: the picture could not be encoded", file));
+
+  const std::string temporary = fmt::format("{}.{}.tmp", file, ::getpid());
+  std::FILE* out = std::fopen(temporary.c_str(), "wb");
+  bool good = out != nullptr;
+  int reason = errno;
+  if (good) {
+    good = std::fwrite(bytes.data(), 1, bytes.size(), out) == bytes.size();
+    if (!good) reason = errno;
+    if (std::fclose(out) != 0 && good) good = false, reason = errno;
+    if (good && std::rename(temporary.c_str(), file.c_str()) != 0) good = false, reason = errno;
+    if (!good) std::remove(temporary.c_str());
+  }
+  if (!good) throw OutputError(fmt::format("{}: the picture could not be written: {}", file, std::strerror(reason)));
+}
+
+}  // namespace sunfleck
