@@ -1,0 +1,56 @@
+// What the parts of the scene reader share: one file a topic, read in the order of read_scene().
+#pragma once
+
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include <sunfleck/scene/scene.hpp>
+
+#include <format/toml_value.hpp>
+
+namespace sunfleck {
+
+/// One value per band from { PAR = 1.0, NIR = 2.0 }: every band must be there; each is checked by `check`.
+std::vector<double> read_per_band(const TomlValue& table, const Scene& scene, const std::function<double(const TomlValue&)>& read);
+
+/// A path given relative to the scene file; throws InputError at the value if it is missing or a folder.
+std::string read_path(const TomlValue& value, const Scene& scene, const std::string& expected);
+
+// scene_toml_light.cpp
+TomlSchema sun_schema(const TomlSchema& per_band);
+TomlSchema sky_schema(const TomlSchema& per_band);
+TomlSchema global_schema(const TomlSchema& per_band);
+/// [sun], [sky], [global] or [[state]] -> Scene::states.
+void read_light(const TomlValue& root, Scene& scene);
+
+// scene_toml_optics.cpp
+TomlSchema optics_schema(const TomlSchema& per_band);
+TomlSchema ground_schema(const TomlSchema& per_band);
+void read_optics(const TomlValue& root, Scene& scene);
+void read_ground(const TomlValue& root, Scene& scene);
+
+// scene_toml_placements.cpp
+/// Keys of one placement: position, turn, scale, tilt, tilt_azimuth, mirror, grid, file.
+TomlSchema placement_schema(const std::vector<std::string>& further_keys);
+TomlSchema grid_schema();
+std::vector<Placement> read_grid(const TomlValue& grid);
+/// Placements of one entry: itself, the cells of its grid, or the rows of its CSV file.
+std::vector<Placement> read_placements(const TomlValue& entry, const Scene& scene);
+
+// scene_toml_plants.cpp
+TomlSchema plant_schema();
+TomlSchema group_schema();
+/// [[plant]], [[group]] and [[place]].
+void read_plants_and_groups(const TomlValue& root, Scene& scene);
+/// Metres per unit: m, cm, mm, inch, foot.
+double read_unit(const TomlValue& owner);
+
+// scene_toml_choices.cpp
+TomlSchema output_schema();
+TomlSchema solve_schema();
+void read_output(const TomlValue& root, Scene& scene);
+void read_solve(const TomlValue& root, Scene& scene);
+
+}  // namespace sunfleck
