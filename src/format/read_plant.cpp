@@ -19,7 +19,9 @@ Plant read_by_suffix(const std::string& file) {
   std::transform(suffix.begin(), suffix.end(), suffix.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   if (suffix == ".opf") return read_opf(file);
   if (suffix == ".obj") return read_obj(file);
-  throw InputError(file, suffix.empty() ? "no suffix" : "suffix " + in_quotes(suffix), ".opf or .obj");
+  if (suffix == ".ply") return read_ply(file);
+  if (suffix == ".can") return read_can(file);
+  throw InputError(file, suffix.empty() ? "no suffix" : "suffix " + in_quotes(suffix), ".opf, .obj, .ply or .can");
 }
 
 }  // namespace

@@ -4,11 +4,11 @@
 
 namespace sunfleck {
 
-Plant empty_plant(const std::string& name, const std::string& file) {
+Plant empty_plant(const std::string& name, const std::string& file, const std::string& type) {
   Plant plant;
   plant.name = name;
   plant.file = file;
-  add_structure(plant, no_parent, "plant", name);
+  add_structure(plant, no_parent, type, name);
   return plant;
 }
 

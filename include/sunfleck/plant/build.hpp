@@ -10,8 +10,8 @@
 
 namespace sunfleck {
 
-/// A plant (type "plant") without organs yet.
-Plant empty_plant(const std::string& name, const std::string& file = {});
+/// A plant without organs yet; type is that of the whole.
+Plant empty_plant(const std::string& name, const std::string& file = {}, const std::string& type = "plant");
 
 /// Appends a structure and returns its index.
 std::uint32_t add_structure(Plant& plant, std::uint32_t parent, const std::string& type, const std::string& name);
