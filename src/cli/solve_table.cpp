@@ -1,0 +1,58 @@
+#include "cli/solve_table.hpp"
+
+#include <algorithm>
+#include <string>
+
+#include <fmt/format.h>
+
+namespace sunfleck {
+
+namespace {
+
+/// Power of a band: irradiance in W m^-2 gives W; photon flux density in umol m^-2 s^-1 gives umol/s.
+std::string power_unit(const std::string& irradiance_unit) {
+  return irradiance_unit == "umol m^-2 s^-1" ? "umol/s" : "W";
+}
+
+std::string fraction(double part, double whole) {
+  return whole > 0.0 ? fmt::format("{:.4f}", part / whole) : std::string("-");
+}
+
+void print_balance(const Scene& scene, const SolveReport& report) {
+  std::size_t name_width = 5;
+  for (const auto& state : scene.states) name_width = std::max(name_width, state.name.size());
+  const bool many = scene.states.size() > 1;
+  const auto lead = [&](const std::string& text) { return many ? fmt::format("{:<{}}  ", text, name_width) : std::string(); };
+  fmt::print("{}{:<8} {:>12} {:>12} {:>12} {:>7} {:>9} {:>9} {:>9} {:>9}\n", lead("state"), "band", "incident", "leaves", "ground", "",
+             "absorbed", "ground", "albedo", "residual");
+  for (std::size_t s = 0; s < report.balance.size(); ++s)
+    for (std::size_t b = 0; b < report.balance[s].size(); ++b) {
+      const Balance& balance = report.balance[s][b];
+      fmt::print("{}{:<8} {:>12.5g} {:>12.5g} {:>12.5g} {:>7} {:>9} {:>9} {:>9} {:>9.1e}\n", lead(scene.states[s].name), scene.bands[b],
+                 balance.incident, balance.leaves, balance.ground, power_unit(scene.band_units[b]),
+                 fraction(balance.leaves, balance.incident), fraction(balance.ground, balance.incident),
+                 fraction(balance.escaped, balance.incident), balance.incident > 0.0 ? balance.residual() / balance.incident : 0.0);
+    }
+}
+
+void print_certificate(const Scene& scene, const Certificate& certificate) {
+  fmt::print("\nerror of an organ's absorbed light against path tracing of {} organs, % of the mean\n", certificate.organs.size());
+  fmt::print("{:<8} {:>8} {:>17} {:>8}\n", "band", "rmse", "95 % interval", "bias");
+  for (std::size_t b = 0; b < scene.band_count(); ++b)
+    fmt::print("{:<8} {:>8.2f} {:>8.2f} {:>8.2f} {:>+8.2f}\n", scene.bands[b], 100.0 * certificate.rmse[b], 100.0 * certificate.rmse_low[b],
+               100.0 * certificate.rmse_high[b], 100.0 * certificate.bias[b]);
+}
+
+}  // namespace
+
+void print_solve_table(const Scene& scene, const SolveReport& report, const Certificate* certificate) {
+  fmt::print("{}\n", scene.periodic ? "power balance of one cell; absorbed, ground and albedo are fractions of the incident light"
+                                    : "power balance; absorbed, ground and albedo are fractions of the incident light");
+  print_balance(scene, report);
+  if (certificate)
+    print_certificate(scene, *certificate);
+  else if (report.method != "reference")
+    fmt::print("\nnot certified: the error of this result is not known\n");
+}
+
+}  // namespace sunfleck

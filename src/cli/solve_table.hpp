@@ -1,0 +1,13 @@
+// What a solve prints on standard output: the balance of every state and band, and the certified error.
+#pragma once
+
+#include <sunfleck/result/certificate.hpp>
+#include <sunfleck/scene/scene.hpp>
+#include <sunfleck/scene/solution.hpp>
+
+namespace sunfleck {
+
+/// `certificate` may be null.
+void print_solve_table(const Scene& scene, const SolveReport& report, const Certificate* certificate);
+
+}  // namespace sunfleck
