@@ -1,0 +1,132 @@
+#include <map>
+#include <unordered_map>
+
+#include "result/describe_scene.hpp"
+
+namespace sunfleck::h5 {
+
+namespace {
+
+void push(std::vector<double>& rows, const Affine& map) {  // row major [linear | translation]
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) rows.push_back(map.linear[column][row]);
+    rows.push_back(map.translation[row]);
+  }
+}
+
+/// All meshes end to end, with where each begins.
+struct Meshes {
+  std::vector<double> vertices;
+  std::vector<std::uint32_t> triangles;
+  std::vector<std::uint64_t> first_vertex{0}, first_triangle{0};
+
+  void add(const Mesh& mesh) {
+    for (const auto& v : mesh.vertices) vertices.insert(vertices.end(), {v.x, v.y, v.z});
+    for (const auto& t : mesh.triangles) triangles.insert(triangles.end(), t.begin(), t.end());
+    first_vertex.push_back(vertices.size() / 3);
+    first_triangle.push_back(triangles.size() / 3);
+  }
+};
+
+/// Ground facets with shared corners.
+Mesh ground_mesh(const FacetScene& facets) {
+  struct Hash {
+    std::size_t operator()(const std::array<double, 3>& p) const {
+      std::size_t h = 0;
+      for (const double x : p) h = h * 1000003u ^ std::hash<double>{}(x);
+      return h;
+    }
+  };
+  Mesh mesh;
+  std::unordered_map<std::array<double, 3>, std::uint32_t, Hash> known;
+  for (std::size_t f = facets.plant_facets; f < facets.size(); ++f) {
+    std::array<std::uint32_t, 3> triangle;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const Vec3& p = facets.corners[f][c];
+      const auto [place, added] = known.try_emplace({p.x, p.y, p.z}, static_cast<std::uint32_t>(mesh.vertices.size()));
+      if (added) mesh.vertices.push_back(p);
+      triangle[c] = place->second;
+    }
+    mesh.triangles.push_back(triangle);
+  }
+  return mesh;
+}
+
+}  // namespace
+
+void write_geometry(OutputFile& file, ArrayWriter& arrays, const Scene& scene, const FacetScene& facets) {
+  Meshes meshes;
+  std::map<const Plant*, std::uint32_t> model_of;
+  std::vector<std::string> types, plant_names;
+  std::map<std::string, std::uint32_t> type_rows;
+  std::vector<std::uint32_t> shape_mesh, shape_first, shape_count, shape_structure, structure_parent, structure_type, plant_model, plant_optics;
+  std::vector<double> shape_placement, copy_map;
+  std::vector<std::uint64_t> model_first_shape{0}, model_first_structure{0}, plant_first_optics{0}, copy_first_facet;
+
+  for (const auto& entry : scene.plants) {
+    const Plant& plant = *entry.plant;
+    const auto [place, added] = model_of.try_emplace(&plant, static_cast<std::uint32_t>(model_of.size()));
+    if (added) {
+      const auto first_mesh = static_cast<std::uint32_t>(meshes.first_vertex.size() - 1);
+      for (const auto& mesh : plant.meshes) meshes.add(mesh);
+      for (const auto& s : plant.shapes) {
+        shape_mesh.push_back(first_mesh + s.mesh);
+        shape_first.push_back(s.first_triangle);
+        shape_count.push_back(s.triangle_count);
+        shape_structure.push_back(s.structure);
+        push(shape_placement, s.placement);
+      }
+      for (const auto& s : plant.structures) {
+        const auto [row, fresh] = type_rows.try_emplace(plant.types[s.type], static_cast<std::uint32_t>(types.size()));
+        if (fresh) types.push_back(plant.types[s.type]);
+        structure_parent.push_back(s.parent);
+        structure_type.push_back(row->second);
+      }
+      model_first_shape.push_back(shape_mesh.size());
+      model_first_structure.push_back(structure_parent.size());
+    }
+    plant_names.push_back(entry.name);
+    plant_model.push_back(place->second);
+    plant_optics.insert(plant_optics.end(), entry.shape_optics.begin(), entry.shape_optics.end());
+    plant_first_optics.push_back(plant_optics.size());
+  }
+  std::uint64_t facet = 0;
+  for (std::size_t c = 0; c < facets.copies.size(); ++c) {
+    push(copy_map, facets.copies[c]);
+    copy_first_facet.push_back(facet);
+    facet += scene.plants[facets.copy_plant[c]].plant->facet_count();
+  }
+  const bool ground = facets.plant_facets < facets.size();
+  if (ground) meshes.add(ground_mesh(facets));  // the last mesh
+
+  const Id group = make_group(file, file.id(), "geometry");
+  const hid_t g = group.get();
+  arrays.write(g, "vertices", meshes.vertices.data(), {meshes.vertices.size() / 3, 3}, "m");
+  arrays.write(g, "triangles", meshes.triangles.data(), {meshes.triangles.size() / 3, 3}, "vertex of the mesh");
+  arrays.write(g, "mesh_first_vertex", meshes.first_vertex, "row of vertices");
+  arrays.write(g, "mesh_first_triangle", meshes.first_triangle, "row of triangles");
+  arrays.write(g, "shape_mesh", shape_mesh, "mesh");
+  arrays.write(g, "shape_first_triangle", shape_first, "triangle of the mesh");
+  arrays.write(g, "shape_triangle_count", shape_count, "1");
+  arrays.write(g, "shape_structure", shape_structure, "structure of the model");
+  arrays.write(g, "shape_placement", shape_placement.data(), {shape_mesh.size(), 3, 4}, "m");
+  arrays.write(g, "structure_parent", structure_parent, "structure of the model, 4294967295 = none");
+  arrays.write(g, "structure_type", structure_type, "row of structure_type_name");
+  arrays.write_strings(g, "structure_type_name", types);
+  arrays.write(g, "model_first_shape", model_first_shape, "row of shape_*");
+  arrays.write(g, "model_first_structure", model_first_structure, "row of structure_*");
+  arrays.write_strings(g, "plant_name", plant_names);
+  arrays.write(g, "plant_model", plant_model, "model");
+  arrays.write(g, "plant_first_optics", plant_first_optics, "row of plant_shape_optics");
+  arrays.write(g, "plant_shape_optics", plant_optics, "row of /optics");
+  arrays.write(g, "copy_plant", facets.copy_plant, "row of plant_name");
+  arrays.write(g, "copy_map", copy_map.data(), {facets.copies.size(), 3, 4}, "m");
+  arrays.write(g, "copy_first_facet", copy_first_facet, "row of /facets");
+  const std::vector<double> cell = facets.periodic ? std::vector<double>{facets.periodic->x_low, facets.periodic->y_low, facets.periodic->x_high, facets.periodic->y_high} : std::vector<double>{};
+  if (facets.periodic) arrays.write(g, "periodic_cell", cell, "m");
+  write_attribute(file, g, "plant_facets", facets.plant_facets);
+  write_attribute(file, g, "ground_facets", facets.size() - facets.plant_facets);
+  arrays.flush();
+}
+
+}  // namespace sunfleck::h5

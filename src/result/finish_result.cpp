@@ -1,0 +1,118 @@
+#include "result/finish_result.hpp"
+
+#include <sunfleck/core/memory.hpp>
+
+namespace sunfleck::h5 {
+
+namespace {
+
+std::vector<float> as_float(const std::vector<double>& values) { return {values.begin(), values.end()}; }
+
+/// sums[...][m][inner] / area[m], zero where there is no area.
+std::vector<float> per_area(const std::vector<double>& sums, const OrganTotals& totals, std::size_t inner) {
+  std::vector<float> out(sums.size());
+  for (std::size_t i = 0; i < sums.size(); ++i) {
+    const double area = totals.area[(i / inner) % totals.organs];
+    out[i] = area > 0 ? static_cast<float>(sums[i] / area) : 0.0f;
+  }
+  return out;
+}
+
+void write_balance(OutputFile& file, ArrayWriter& arrays, const SolveReport& report, const OrganTotals& totals, const HeightProfile& profile) {
+  const std::size_t states = totals.states, bands = totals.bands;
+  std::vector<double> columns[8];
+  const char* names[8] = {"incident", "leaves", "ground", "escaped", "residual", "absorbed_fraction_leaves", "absorbed_fraction_ground", "albedo"};
+  for (std::size_t s = 0; s < states; ++s)
+    for (std::size_t b = 0; b < bands; ++b) {
+      const Balance balance = report.balance.empty() ? Balance{} : report.balance.at(s).at(b);
+      const double part = balance.incident > 0 ? 1.0 / balance.incident : 0.0;
+      const double values[8] = {balance.incident,        balance.leaves,        balance.ground,        balance.escaped, balance.residual(),
+                                balance.leaves * part, balance.ground * part, balance.escaped * part};
+      for (std::size_t i = 0; i < 8; ++i) columns[i].push_back(values[i]);
+    }
+  const Id group = make_group(file, file.id(), "balance");
+  for (std::size_t i = 0; i < 8; ++i) arrays.write(group.get(), names[i], columns[i].data(), {states, bands}, i < 5 ? "W" : "1");
+  const Id layers = make_group(file, group.get(), "profile");
+  arrays.write(layers.get(), "height", profile.height, "m");
+  arrays.write(layers.get(), "area", profile.area, "m^2");
+  arrays.write(layers.get(), "absorbed", profile.absorbed.data(), {states, HeightProfile::layers, bands}, "W");
+  arrays.flush();
+}
+
+void write_certificate(OutputFile& file, ArrayWriter& arrays, const Certificate& c, const OrganTotals& totals) {
+  const std::vector<std::size_t> dims{totals.states, c.organs.size(), totals.bands};
+  const Id group = make_group(file, file.id(), "certificate");
+  arrays.write(group.get(), "organs", c.organs, "row of /organs");
+  arrays.write(group.get(), "solved", c.solved.data(), dims, "W");
+  arrays.write(group.get(), "reference", c.reference.data(), dims, "W");
+  arrays.write(group.get(), "standard_error", c.standard_error.data(), dims, "W");
+  write_attribute(file, group.get(), "rmse", c.rmse);
+  write_attribute(file, group.get(), "rmse_low", c.rmse_low);
+  write_attribute(file, group.get(), "rmse_high", c.rmse_high);
+  write_attribute(file, group.get(), "bias", c.bias);
+  if (!c.bias_standard_error.empty()) write_attribute(file, group.get(), "bias_standard_error", c.bias_standard_error);
+  write_attribute(file, group.get(), "rays", c.rays);
+  write_attribute(file, group.get(), "seed", c.seed);
+  arrays.flush();
+}
+
+/// Two columns, /GROUP/name and /GROUP/value.
+template <class T>
+void write_pairs(OutputFile& file, ArrayWriter& arrays, hid_t group, const std::vector<std::pair<std::string, T>>& pairs, const char* column, const char* unit) {
+  std::vector<std::string> names;
+  std::vector<T> values;
+  for (const auto& [name, value] : pairs) {
+    names.push_back(name);
+    values.push_back(value);
+  }
+  arrays.write_strings(group, "name", names);
+  arrays.write(group, column, values, unit);
+  arrays.flush();
+  file.check();
+}
+
+}  // namespace
+
+void write_organ_values(ArrayWriter& arrays, hid_t group, const OrganTotals& totals, const std::function<bool(const char*)>& keeps) {
+  const std::size_t s = totals.states, m = totals.organs, b = totals.bands;
+  arrays.write(group, "area", as_float(totals.area), "m^2");
+  if (keeps("organs/irradiance")) arrays.write(group, "irradiance", per_area(totals.irradiance, totals, 2 * b).data(), {s, m, 2, b}, "W m^-2");
+  if (keeps("organs/absorbed")) arrays.write(group, "absorbed", as_float(totals.absorbed).data(), {s, m, b}, "W");
+  if (keeps("organs/sunlit")) arrays.write(group, "sunlit", per_area(totals.sunlit, totals, 2).data(), {s, m, 2}, "1");
+  arrays.flush();
+}
+
+void write_report(OutputFile& file, ArrayWriter& arrays, const SolveReport& report, const Certificate* certificate, const OrganTotals& totals,
+                  const HeightProfile& profile) {
+  write_attribute(file, file.id(), "status", report.status == SolveStatus::converged ? "converged" : "not_converged");
+  write_balance(file, arrays, report, totals, profile);
+
+  std::vector<std::uint32_t> level, iteration;
+  std::vector<double> residual, seconds;
+  std::vector<std::uint64_t> links;
+  for (const auto& row : report.convergence) {
+    level.push_back(row.level);
+    iteration.push_back(row.iteration);
+    residual.push_back(row.residual);
+    links.push_back(row.links);
+    seconds.push_back(row.seconds);
+  }
+  const Id timings = make_group(file, file.id(), "timings"), convergence = make_group(file, file.id(), "convergence");
+  arrays.write(convergence.get(), "level", level, "1");
+  arrays.write(convergence.get(), "iteration", iteration, "1");
+  arrays.write(convergence.get(), "residual", residual, "1");
+  arrays.write(convergence.get(), "links", links, "1");
+  arrays.write(timings.get(), "iteration", seconds, "s");
+  arrays.flush();
+  // Only /timings and /memory differ between two runs: the seconds live there, and convergence points to them.
+  file.check(H5Lcreate_soft("/timings/iteration", convergence.get(), "seconds", H5P_DEFAULT, H5P_DEFAULT) >= 0);
+  write_pairs(file, arrays, timings.get(), report.timings, "seconds", "s");
+
+  const Id counts = make_group(file, file.id(), "counts"), memory = make_group(file, file.id(), "memory");
+  write_pairs(file, arrays, counts.get(), report.counts, "value", "1");
+  write_pairs(file, arrays, memory.get(), report.memory, "bytes", "byte");
+  write_attribute(file, memory.get(), "peak_resident_bytes", peak_resident_bytes());
+  if (certificate) write_certificate(file, arrays, *certificate, totals);
+}
+
+}  // namespace sunfleck::h5

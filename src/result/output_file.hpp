@@ -1,0 +1,40 @@
+// A file that is complete or absent: grows under a temporary name, takes its own name at the end.
+#pragma once
+
+#include <string>
+
+#include "result/h5.hpp"
+
+namespace sunfleck::h5 {
+
+/// What the file driver has met; outlives the HDF5 file.
+struct DriverState {
+  int descriptor = -1;
+  int error = 0;  ///< errno of the first write that failed; from then on nothing is written and HDF5 is told that all is well
+};
+
+/// HDF5 cannot close a file whose last writes fail (it keeps dangling handles). So the file is written through a driver of our own
+/// that remembers the first error and swallows what follows; check() turns it into an OutputError with the system's words.
+class OutputFile {
+ public:
+  /// Throws OutputError if the folder cannot be written or `path` is something else than a file.
+  explicit OutputFile(const std::string& path);
+  ~OutputFile();
+  OutputFile(const OutputFile&) = delete;
+  OutputFile& operator=(const OutputFile&) = delete;
+
+  hid_t id() const { return file_.get(); }
+  const std::string& path() const { return path_; }
+  /// Throws OutputError naming the file if a write has failed, or if `good` is false.
+  void check(bool good = true) const;
+  /// Flushes to the disk and renames. All handles of datasets must be closed.
+  void commit();
+
+ private:
+  std::string path_, final_, temporary_;
+  DriverState state_;
+  Id file_;
+  bool committed_ = false;
+};
+
+}  // namespace sunfleck::h5
