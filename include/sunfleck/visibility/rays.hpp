@@ -1,0 +1,64 @@
+// Rays through the facets of a scene, finite or periodic (Embree).
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <memory>
+
+#include <sunfleck/scene/facets.hpp>
+
+namespace sunfleck {
+
+inline constexpr std::uint32_t no_facet = 0xffffffffu;
+
+/// What a ray meets first.
+struct RayHit {
+  std::uint32_t facet = no_facet;  ///< row of FacetScene; no_facet = nothing
+  bool front = true;               ///< which side is met
+  double u = 0, v = 0;             ///< the point is corner 0 + u (corner 1 - corner 0) + v (corner 2 - corner 0), in any image
+  double distance = std::numeric_limits<double>::infinity();  ///< along the ray [m]
+
+  explicit operator bool() const { return facet != no_facet; }
+};
+
+/// Ray queries on a FacetScene, which must outlive it. All queries may run in any number of threads; the answers do not depend on it.
+///
+/// Geometry is kept in single precision relative to the middle of the scene, in units of its size: surfaces nearer to each other
+/// than 1e-6 of the scene's size are told apart only if they are *stacked* (below). Facets without area are left out.
+///
+/// Rays that start on a facet name it (`start`): it is left out by its number, so no offset is needed. Facets that lie exactly on
+/// each other (parallel within 1e-6 rad, planes nearer than 4e-7 of the scene's size, overlapping) are stacked: their order is
+/// that of their planes in double precision where these differ, else the facet with the higher row lies on the side of positive
+/// z (or y, or x where that is zero) of the common normal. Light between them is therefore exchanged as between leaves with a
+/// vanishing gap.
+///
+/// In a periodic scene the ray is wrapped cell by cell without a limit on their number, until it has left the geometry's range of
+/// heights. To make that end, directions within 1e-6 rad of the horizon are turned to 1e-6 above or below. Images of a facet
+/// are seen by the facet itself.
+class RayScene {
+ public:
+  explicit RayScene(const FacetScene& scene);
+  ~RayScene();
+  RayScene(const RayScene&) = delete;
+  RayScene& operator=(const RayScene&) = delete;
+
+  /// The first facet within `range` [m] along the unit vector `direction`. `start`: the facet on which `origin` lies.
+  /// Throws Error if origin or direction is not finite.
+  RayHit first_hit(const Vec3& origin, const Vec3& direction, std::uint32_t start = no_facet,
+                   double range = std::numeric_limits<double>::infinity()) const;
+  /// True if any facet stands within `range` [m] along the unit vector `direction`.
+  bool occluded(const Vec3& origin, const Vec3& direction, std::uint32_t start = no_facet,
+                double range = std::numeric_limits<double>::infinity()) const;
+
+  /// Bytes held by the acceleration structure and its copy of the geometry, counted as they were allocated.
+  std::size_t bytes() const;
+  /// Pairs of facets that lie on each other.
+  std::size_t stacked_pairs() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace sunfleck
