@@ -181,14 +181,21 @@ Id DatasetReader::attribute(const std::string& object, const char* name) const {
 
 std::string DatasetReader::text_attribute(const std::string& object, const char* name) const {
   const Quiet quiet;
-  const Id id = attribute(object, name), type{H5Aget_type(id.get())};
+  const Id id = attribute(object, name), type{H5Aget_type(id.get())}, space{H5Aget_space(id.get())};
   const std::string label = std::string("@") + name;
-  if (H5Tget_class(type.get()) != H5T_STRING || H5Tis_variable_str(type.get()) > 0) fail(label, "no text of fixed length", "text");
-  const Id space{H5Aget_space(id.get())};
+  if (H5Tget_class(type.get()) != H5T_STRING) fail(label, "no text", "text");
   if (H5Sget_simple_extent_npoints(space.get()) != 1) fail(label, "several texts", "one");
-  std::string text(H5Tget_size(type.get()), '\0');
-  if (H5Aread(id.get(), type.get(), text.data()) < 0) fail(label, "a damaged attribute", "one that can be read");
-  text.resize(text.find_last_not_of('\0') + 1);
+  std::string text;
+  if (H5Tis_variable_str(type.get()) > 0) {
+    char* pointer = nullptr;
+    if (H5Aread(id.get(), type.get(), &pointer) < 0) fail(label, "a damaged attribute", "one that can be read");
+    if (pointer) text = pointer;
+    H5free_memory(pointer);
+  } else {
+    text.resize(H5Tget_size(type.get()));
+    if (H5Aread(id.get(), type.get(), text.data()) < 0) fail(label, "a damaged attribute", "one that can be read");
+    text.resize(text.find_last_not_of('\0') + 1);
+  }
   return text;
 }
 

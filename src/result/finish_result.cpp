@@ -35,7 +35,7 @@ void write_balance(OutputFile& file, ArrayWriter& arrays, const SolveReport& rep
   const Id layers = make_group(file, group.get(), "profile");
   arrays.write(layers.get(), "height", profile.height, "m");
   arrays.write(layers.get(), "area", profile.area, "m^2");
-  arrays.write(layers.get(), "absorbed", profile.absorbed.data(), {states, HeightProfile::layers, bands}, "W");
+  arrays.write_states(layers.get(), "absorbed", profile.absorbed.data(), {states, HeightProfile::layers, bands}, "W");
   arrays.flush();
 }
 
@@ -43,9 +43,9 @@ void write_certificate(OutputFile& file, ArrayWriter& arrays, const Certificate&
   const std::vector<std::size_t> dims{totals.states, c.organs.size(), totals.bands};
   const Id group = make_group(file, file.id(), "certificate");
   arrays.write(group.get(), "organs", c.organs, "row of /organs");
-  arrays.write(group.get(), "solved", c.solved.data(), dims, "W");
-  arrays.write(group.get(), "reference", c.reference.data(), dims, "W");
-  arrays.write(group.get(), "standard_error", c.standard_error.data(), dims, "W");
+  arrays.write_states(group.get(), "solved", c.solved.data(), dims, "W");
+  arrays.write_states(group.get(), "reference", c.reference.data(), dims, "W");
+  arrays.write_states(group.get(), "standard_error", c.standard_error.data(), dims, "W");
   write_attribute(file, group.get(), "rmse", c.rmse);
   write_attribute(file, group.get(), "rmse_low", c.rmse_low);
   write_attribute(file, group.get(), "rmse_high", c.rmse_high);
@@ -76,9 +76,9 @@ void write_pairs(OutputFile& file, ArrayWriter& arrays, hid_t group, const std::
 void write_organ_values(ArrayWriter& arrays, hid_t group, const OrganTotals& totals, const std::function<bool(const char*)>& keeps) {
   const std::size_t s = totals.states, m = totals.organs, b = totals.bands;
   arrays.write(group, "area", as_float(totals.area), "m^2");
-  if (keeps("organs/irradiance")) arrays.write(group, "irradiance", per_area(totals.irradiance, totals, 2 * b).data(), {s, m, 2, b}, "W m^-2");
-  if (keeps("organs/absorbed")) arrays.write(group, "absorbed", as_float(totals.absorbed).data(), {s, m, b}, "W");
-  if (keeps("organs/sunlit")) arrays.write(group, "sunlit", per_area(totals.sunlit, totals, 2).data(), {s, m, 2}, "1");
+  if (keeps("organs/irradiance")) arrays.write_states(group, "irradiance", per_area(totals.irradiance, totals, 2 * b).data(), {s, m, 2, b}, "W m^-2");
+  if (keeps("organs/absorbed")) arrays.write_states(group, "absorbed", as_float(totals.absorbed).data(), {s, m, b}, "W");
+  if (keeps("organs/sunlit")) arrays.write_states(group, "sunlit", per_area(totals.sunlit, totals, 2).data(), {s, m, 2}, "1");
   arrays.flush();
 }
 

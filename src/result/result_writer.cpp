@@ -101,7 +101,7 @@ class ResultWriter::Impl {
     h5::write_organ_values(arrays, organs_group_.get(), totals_, [&](const char* name) { return keeps(name); });
     if (!report.organ_variance.absorbed.empty() && keeps("variance/organs")) {
       if (!variance_group_) variance_group_ = h5::make_group(file_, file_.id(), "variance");
-      arrays.write(variance_group_.get(), "organs", report.organ_variance.absorbed.data(), {totals_.states, totals_.organs, totals_.bands}, "W^2");
+      arrays.write_states(variance_group_.get(), "organs", report.organ_variance.absorbed.data(), {totals_.states, totals_.organs, totals_.bands}, "W^2");
       arrays.flush();
     }
     h5::write_report(file_, arrays, report, certificate, totals_, profile_);

@@ -17,6 +17,23 @@ constexpr std::uint32_t deflate_skipped = 1u << 1;            // filter 0 is shu
 
 }  // namespace
 
+Id string_type(std::size_t length) {
+  Id type{H5Tcopy(H5T_C_S1)};
+  H5Tset_size(type.get(), std::max<std::size_t>(length, 1));
+  H5Tset_cset(type.get(), H5T_CSET_UTF8);
+  H5Tset_strpad(type.get(), H5T_STR_NULLPAD);
+  return type;
+}
+
+namespace {
+
+void write_attribute_raw(OutputFile& file, hid_t object, const char* name, hid_t type, hid_t space, const void* data) {
+  const Id attribute{H5Acreate2(object, name, type, space, H5P_DEFAULT, H5P_DEFAULT)};
+  file.check(attribute && H5Awrite(attribute.get(), type, data) >= 0);
+}
+
+}  // namespace
+
 void ChunkQueue::compress(Chunk& chunk) {
   // HDF5's shuffle: all first bytes of the elements, then all second bytes, ...
   const std::size_t count = chunk.bytes.size() / chunk.element_size;
@@ -74,7 +91,10 @@ RowDataset::RowDataset(OutputFile& file, ChunkQueue& queue, hid_t parent, const 
   }
   dataset_ = Id{H5Dcreate2(parent, name.c_str(), type, space.get(), H5P_DEFAULT, properties.get(), H5P_DEFAULT)};
   file_.check(static_cast<bool>(dataset_));
-  if (!unit.empty()) write_attribute(file_, dataset_.get(), "units", std::string(unit));
+  if (!unit.empty()) {
+    const Id unit_type = string_type(unit.size()), scalar{H5Screate(H5S_SCALAR)};
+    write_attribute_raw(file_, dataset_.get(), "units", unit_type.get(), scalar.get(), unit.data());
+  }
   pending_.resize(outer);
   written_rows_.assign(outer, 0);
 }
@@ -120,26 +140,11 @@ void RowDataset::finish() {
   pending_.assign(pending_.size(), {});
 }
 
-Id string_type(std::size_t length) {
-  Id type{H5Tcopy(H5T_C_S1)};
-  H5Tset_size(type.get(), std::max<std::size_t>(length, 1));
-  H5Tset_cset(type.get(), H5T_CSET_UTF8);
-  H5Tset_strpad(type.get(), H5T_STR_NULLPAD);
-  return type;
-}
-
-namespace {
-
-void write_attribute_raw(OutputFile& file, hid_t object, const char* name, hid_t type, hid_t space, const void* data) {
-  const Id attribute{H5Acreate2(object, name, type, space, H5P_DEFAULT, H5P_DEFAULT)};
-  file.check(attribute && H5Awrite(attribute.get(), type, data) >= 0);
-}
-
-}  // namespace
-
 void write_attribute(OutputFile& file, hid_t object, const char* name, const std::string& text) {
-  const Id type = string_type(text.size()), space{H5Screate(H5S_SCALAR)};
-  write_attribute_raw(file, object, name, type.get(), space.get(), text.c_str());
+  // Variable length, so that Python and others read it as text and not as bytes.
+  const Id type = string_type(H5T_VARIABLE), space{H5Screate(H5S_SCALAR)};
+  const char* pointer = text.c_str();
+  write_attribute_raw(file, object, name, type.get(), space.get(), &pointer);
 }
 
 void write_attribute(OutputFile& file, hid_t object, const char* name, std::uint64_t value) {
@@ -161,11 +166,11 @@ Id make_group(OutputFile& file, hid_t parent, const char* name) {
   return group;
 }
 
-void ArrayWriter::write_raw(hid_t group, const char* name, hid_t type, const void* data, const std::vector<std::size_t>& dims,
-                            std::string_view unit) {
-  RowDataset::Shape shape{0, dims.at(0), {dims.begin() + 1, dims.end()}};
+void ArrayWriter::write_raw(hid_t group, const char* name, hid_t type, const void* data, const RowDataset::Shape& shape, std::string_view unit) {
   auto& dataset = open_.emplace_back(file_, queue_, group, name, type, shape, unit);
-  dataset.append(0, data, dims[0]);
+  std::size_t bytes = H5Tget_size(type) * shape.rows;
+  for (const auto n : shape.inner) bytes *= n;
+  for (std::size_t o = 0; o < std::max<std::size_t>(shape.outer, 1); ++o) dataset.append(o, static_cast<const char*>(data) + o * bytes, shape.rows);
   dataset.finish();
 }
 
@@ -175,7 +180,7 @@ void ArrayWriter::write_strings(hid_t group, const char* name, const std::vector
   std::vector<char> padded(texts.size() * length, '\0');
   for (std::size_t i = 0; i < texts.size(); ++i) std::copy(texts[i].begin(), texts[i].end(), padded.begin() + static_cast<std::ptrdiff_t>(i * length));
   const Id type = string_type(length);
-  write_raw(group, name, type.get(), padded.data(), {texts.size()}, "");
+  write_raw(group, name, type.get(), padded.data(), {0, texts.size(), {}}, "");
 }
 
 void ArrayWriter::flush() {

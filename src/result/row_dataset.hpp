@@ -71,7 +71,7 @@ void write_attribute(OutputFile& file, hid_t object, const char* name, const std
 void write_attribute(OutputFile& file, hid_t object, const char* name, std::uint64_t value);
 void write_attribute(OutputFile& file, hid_t object, const char* name, const std::vector<double>& values);
 Id make_group(OutputFile& file, hid_t parent, const char* name);
-/// Fixed-length UTF-8 string type for texts up to `length` bytes.
+/// UTF-8 string type for texts up to `length` bytes, or H5T_VARIABLE.
 Id string_type(std::size_t length);
 
 /// Writes whole arrays; keeps their datasets open until flush().
@@ -81,7 +81,12 @@ class ArrayWriter {
   /// dims[0] is the row dimension.
   template <class T>
   void write(hid_t group, const char* name, const T* data, const std::vector<std::size_t>& dims, std::string_view unit) {
-    write_raw(group, name, memory_type<T>(), data, dims, unit);
+    write_raw(group, name, memory_type<T>(), data, {0, dims.at(0), {dims.begin() + 1, dims.end()}}, unit);
+  }
+  /// dims[0] counts lighting states, dims[1] is the row dimension.
+  template <class T>
+  void write_states(hid_t group, const char* name, const T* data, const std::vector<std::size_t>& dims, std::string_view unit) {
+    write_raw(group, name, memory_type<T>(), data, {dims.at(0), dims.at(1), {dims.begin() + 2, dims.end()}}, unit);
   }
   template <class T>
   void write(hid_t group, const char* name, const std::vector<T>& data, std::string_view unit) {
@@ -91,7 +96,7 @@ class ArrayWriter {
   void flush();
 
  private:
-  void write_raw(hid_t group, const char* name, hid_t type, const void* data, const std::vector<std::size_t>& dims, std::string_view unit);
+  void write_raw(hid_t group, const char* name, hid_t type, const void* data, const RowDataset::Shape& shape, std::string_view unit);
 
   OutputFile& file_;
   ChunkQueue& queue_;
