@@ -29,21 +29,22 @@ TomlSchema scene_schema(const std::vector<std::string>& bands) {
   const TomlSchema per_band = bands.empty() ? TomlSchema::names(TomlSchema::leaf()) : TomlSchema::of(bands);
   const TomlSchema state = TomlSchema::of(
       {"name", "duration_s"}, {{"sun", sun_schema(per_band)}, {"sky", sky_schema(per_band)}, {"global", global_schema(per_band)}});
-  return TomlSchema::of({"bands"}, {{"units", per_band},
-                                    {"domain", TomlSchema::of({"periodic"})},
-                                    {"sun", sun_schema(per_band)},
-                                    {"sky", sky_schema(per_band)},
-                                    {"global", global_schema(per_band)},
-                                    {"state", state},
-                                    {"lamp", TomlSchema::of({"name", "mesh", "unit", "place"}, {{"exitance", per_band}})},
-                                    {"optics", TomlSchema::names(optics_schema(per_band))},
-                                    {"ground", ground_schema(per_band)},
-                                    {"plant", plant_schema()},
-                                    {"group", group_schema()},
-                                    {"place", placement_schema({"plant", "group"})},
-                                    {"sensor", TomlSchema::of({"name", "mesh", "unit"}, {{"grid", TomlSchema::of({"z", "cells", "size", "center"})}})},
-                                    {"output", output_schema()},
-                                    {"solve", solve_schema()}});
+  return TomlSchema::of({"bands"},
+                        {{"units", per_band},
+                         {"domain", TomlSchema::of({"periodic"})},
+                         {"sun", sun_schema(per_band)},
+                         {"sky", sky_schema(per_band)},
+                         {"global", global_schema(per_band)},
+                         {"state", state},
+                         {"lamp", TomlSchema::of({"name", "mesh", "unit", "place"}, {{"exitance", per_band}})},
+                         {"optics", TomlSchema::names(optics_schema(per_band))},
+                         {"ground", ground_schema(per_band)},
+                         {"plant", plant_schema()},
+                         {"group", group_schema()},
+                         {"place", placement_schema({"plant", "group"})},
+                         {"sensor", TomlSchema::of({"name", "mesh", "unit"}, {{"grid", TomlSchema::of({"z", "cells", "size", "center"})}})},
+                         {"output", output_schema()},
+                         {"solve", solve_schema()}});
 }
 
 void read_bands(const TomlValue& root, Scene& scene) {
@@ -75,7 +76,8 @@ void read_domain(const TomlValue& root, Scene& scene) {
   if (!domain) return;
   const auto periodic = domain->need("periodic", "[xmin, ymin, xmax, ymax] of the cell that repeats [m]");
   const auto v = periodic.numbers(4, "xmin, ymin, xmax, ymax [m]");
-  if (!(v[2] > v[0] && v[3] > v[1])) periodic.fail(fmt::format("[{}, {}, {}, {}]", v[0], v[1], v[2], v[3]), "xmax above xmin and ymax above ymin");
+  if (!(v[2] > v[0] && v[3] > v[1]))
+    periodic.fail(fmt::format("[{}, {}, {}, {}]", v[0], v[1], v[2], v[3]), "xmax above xmin and ymax above ymin");
   scene.periodic = PeriodicCell{v[0], v[1], v[2], v[3]};
 }
 

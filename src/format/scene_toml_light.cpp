@@ -20,7 +20,9 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double degree = 3.14159265358979323846 / 180.0;
 
-double irradiance_value(const TomlValue& value) { return value.number(0, infinity); }
+double irradiance_value(const TomlValue& value) {
+  return value.number(0, infinity);
+}
 
 /// Where the sun stands, also below the horizon.
 struct SunPosition {
@@ -29,11 +31,13 @@ struct SunPosition {
 };
 
 SunPosition read_sun_position(const TomlValue& sun) {
-  const auto direction = sun.get("direction"), elevation = sun.get("elevation"), azimuth = sun.get("azimuth"), latitude = sun.get("latitude"),
-             longitude = sun.get("longitude"), time = sun.get("time"), altitude = sun.get("altitude");
+  const auto direction = sun.get("direction"), elevation = sun.get("elevation"), azimuth = sun.get("azimuth"),
+             latitude = sun.get("latitude"), longitude = sun.get("longitude"), time = sun.get("time"), altitude = sun.get("altitude");
   const std::string ways = "one of: `direction`; `elevation` and `azimuth`; `latitude`, `longitude` and `time`";
   const bool by_direction = direction.has_value(), by_angles = elevation || azimuth, by_time = latitude || longitude || time || altitude;
-  if (by_direction + by_angles + by_time != 1) throw InputError(sun.where(), by_direction + by_angles + by_time == 0 ? "no place of the sun" : "several places of the sun", ways);
+  if (by_direction + by_angles + by_time != 1)
+    throw InputError(sun.where(), by_direction + by_angles + by_time == 0 ? "no position of the sun" : "several positions of the sun",
+                     ways);
   if (by_direction) {
     const auto v = direction->numbers(3, "x (east), y (north), z (up), towards the sun");
     const double largest = std::max({std::abs(v[0]), std::abs(v[1]), std::abs(v[2])});
@@ -42,11 +46,13 @@ SunPosition read_sun_position(const TomlValue& sun) {
   }
   if (by_angles) {
     const double e = sun.need("elevation", "the sun's angle above the horizon [degrees], as `azimuth` is given").number(-90, 90, "degrees");
-    const double a = sun.need("azimuth", "the sun's angle from north over east [degrees], as `elevation` is given").number(-360, 360, "degrees");
+    const double a =
+        sun.need("azimuth", "the sun's angle from north over east [degrees], as `elevation` is given").number(-360, 360, "degrees");
     return {direction_from_angles(e, a), 0};
   }
   const std::string needed = "all of `latitude`, `longitude` and `time`";
-  const double north = sun.need("latitude", needed).number(-90, 90, "degrees"), east = sun.need("longitude", needed).number(-180, 360, "degrees");
+  const double north = sun.need("latitude", needed).number(-90, 90, "degrees"),
+               east = sun.need("longitude", needed).number(-180, 360, "degrees");
   const auto when = sun.need("time", needed);
   const double height = altitude ? altitude->number(-500, 9000, "metres") : 0.0;
   const SolarPosition position = solar_position(when.date_time(), north, east, height, when.where());
@@ -59,17 +65,21 @@ struct Shares {
 };
 
 Shares split(const TomlValue& global, const SunPosition& sun, Scene& scene) {
-  const auto per_band = read_per_band(global.need("irradiance", "the global irradiance per band, on a horizontal plane"), scene, irradiance_value);
+  const auto per_band =
+      read_per_band(global.need("irradiance", "the global irradiance per band, on a horizontal plane"), scene, irradiance_value);
   double shortwave = 0;
   if (const auto given = global.get("shortwave")) {
     shortwave = given->number(0, infinity, "W m^-2");
   } else {
     for (std::size_t b = 0; b < per_band.size(); ++b) {
       if (scene.band_units[b] != "W m^-2")
-        throw InputError(global.where("shortwave"), "nothing", "the global radiation of all wavelengths [W m^-2], as band \"" + scene.bands[b] + "\" counts photons");
+        throw InputError(global.where("shortwave"), "nothing",
+                         "the global radiation of all wavelengths [W m^-2], as band \"" + scene.bands[b] + "\" counts photons");
       shortwave += per_band[b];
     }
-    scene.notes.push_back(fmt::format("{}: no `shortwave`: the bands' sum, {:.6g} W m^-2, is taken as the global radiation of all wavelengths", global.where(), shortwave));
+    scene.notes.push_back(
+        fmt::format("{}: no `shortwave`: the bands' sum, {:.6g} W m^-2, is taken as the global radiation of all wavelengths",
+                    global.where(), shortwave));
   }
   int day = sun.day_of_year;
   if (const auto given = global.get("day")) {
@@ -92,13 +102,16 @@ Sky read_sky(const TomlValue& table, const Scene& scene, const std::optional<Sun
   Sky sky;
   const auto model = table.need("model", "one of " + joined(sky_model_names()));
   const std::string name = model.text();
-  if (name == "perez" || name == "file") model.fail('"' + name + "\", which this version does not support", "one of " + joined(sky_model_names()));
+  if (name == "perez" || name == "file")
+    model.fail('"' + name + "\", which this version does not support", "one of " + joined(sky_model_names()));
   sky.model = *sky_model_from_name(model.one_of(sky_model_names()));
   if (shares) {
-    if (const auto irradiance = table.get("irradiance")) irradiance->fail("`irradiance` beside `global`", "one of them: `global` is split into sun and sky");
+    if (const auto irradiance = table.get("irradiance"))
+      irradiance->fail("`irradiance` beside `global`", "one of them: `global` is split into sun and sky");
     sky.irradiance = shares->sky;
   } else {
-    sky.irradiance = read_per_band(table.need("irradiance", "the irradiance per band, on an unobstructed horizontal plane"), scene, irradiance_value);
+    sky.irradiance =
+        read_per_band(table.need("irradiance", "the irradiance per band, on an unobstructed horizontal plane"), scene, irradiance_value);
   }
   if (sun) sky.sun = sun->direction;
   prepare_sky(sky, model.where());
@@ -117,18 +130,23 @@ LightState read_state(const TomlValue& owner, Scene& scene) {
     if (const auto given = sun_table->get("angular_diameter")) diameter = given->number(0, 90, "degrees");
   }
   if (global) {
-    if (!sun_table || !sky_table) global->fail("`global` without " + std::string(sun_table ? "`sky`" : "`sun`"), "a sun (its place) and a sky (its model), between which it is split");
+    if (!sun_table || !sky_table)
+      global->fail("`global` without " + std::string(sun_table ? "`sky`" : "`sun`"),
+                   "a sun with its position and a sky with its model, between which it is split");
     shares = split(*global, *position, scene);
   }
   if (sun_table) {
     const auto given = sun_table->get("irradiance");
     if (shares && given) given->fail("`irradiance` beside `global`", "one of them: `global` is split into sun and sky");
     Sun sun{position->direction, {}, diameter};
-    sun.irradiance = shares ? shares->beam : read_per_band(sun_table->need("irradiance", "the irradiance per band, on a plane that faces the sun"), scene, irradiance_value);
+    sun.irradiance = shares ? shares->beam
+                            : read_per_band(sun_table->need("irradiance", "the irradiance per band, on a plane that faces the sun"), scene,
+                                            irradiance_value);
     if (sun.direction.z > 0)
       state.sun = std::move(sun);
     else
-      scene.notes.push_back(fmt::format("{}: the sun is {:.2f} degrees below the horizon: no sun", sun_table->where(), -std::asin(sun.direction.z) / degree));
+      scene.notes.push_back(
+          fmt::format("{}: the sun is {:.2f} degrees below the horizon: no sun", sun_table->where(), -std::asin(sun.direction.z) / degree));
   }
   if (sky_table) state.sky = read_sky(*sky_table, scene, position, shares);
   return state;
@@ -137,27 +155,35 @@ LightState read_state(const TomlValue& owner, Scene& scene) {
 }  // namespace
 
 TomlSchema sun_schema(const TomlSchema& per_band) {
-  return TomlSchema::of({"direction", "elevation", "azimuth", "latitude", "longitude", "time", "altitude", "angular_diameter"}, {{"irradiance", per_band}});
+  return TomlSchema::of({"direction", "elevation", "azimuth", "latitude", "longitude", "time", "altitude", "angular_diameter"},
+                        {{"irradiance", per_band}});
 }
-TomlSchema sky_schema(const TomlSchema& per_band) { return TomlSchema::of({"model"}, {{"irradiance", per_band}}); }
-TomlSchema global_schema(const TomlSchema& per_band) { return TomlSchema::of({"shortwave", "day"}, {{"irradiance", per_band}}); }
+TomlSchema sky_schema(const TomlSchema& per_band) {
+  return TomlSchema::of({"model"}, {{"irradiance", per_band}});
+}
+TomlSchema global_schema(const TomlSchema& per_band) {
+  return TomlSchema::of({"shortwave", "day"}, {{"irradiance", per_band}});
+}
 
 void read_light(const TomlValue& root, Scene& scene) {
   const auto states = root.get("state");
   if (!states) {
-    if (!root.has("sun") && !root.has("sky") && !root.has("global")) throw InputError(location(scene.file), "no light", "[sun], [sky], or any number of [[state]]");
+    if (!root.has("sun") && !root.has("sky") && !root.has("global"))
+      throw InputError(location(scene.file), "no light", "[sun], [sky], or any number of [[state]]");
     scene.states.push_back(read_state(root, scene));
     return;
   }
   for (const char* name : {"sun", "sky", "global"})
-    if (const auto value = root.get(name)) value->fail(fmt::format("[{}] beside [[state]]", name), "one of them: each [[state]] has its own light");
+    if (const auto value = root.get(name))
+      value->fail(fmt::format("[{}] beside [[state]]", name), "one of them: each [[state]] has its own light");
   std::set<std::string> seen;
   for (const auto& table : states->tables()) {
     if (!table.has("sun") && !table.has("sky") && !table.has("global")) table.fail("no light", "`sun`, `sky` or both");
     LightState state = read_state(table, scene);
     const auto name = table.get("name");
     state.name = name ? name->text() : fmt::format("state {}", scene.states.size() + 1);
-    if (!seen.insert(state.name).second) (name ? *name : table).fail(fmt::format("the name \"{}\" twice", state.name), "a name for every state");
+    if (!seen.insert(state.name).second)
+      (name ? *name : table).fail(fmt::format("the name \"{}\" twice", state.name), "a name for every state");
     if (const auto duration = table.get("duration_s")) state.duration_s = duration->number(0, infinity, "seconds");
     scene.states.push_back(std::move(state));
   }

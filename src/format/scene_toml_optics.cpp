@@ -6,6 +6,7 @@
 
 #include <sunfleck/core/error.hpp>
 #include <sunfleck/format/read_plant.hpp>
+#include <sunfleck/scene/build.hpp>
 
 #include <format/scene_toml_parts.hpp>
 
@@ -13,9 +14,13 @@ namespace sunfleck {
 
 namespace {
 
-double fraction(const TomlValue& value) { return value.number(0, 1); }
+double fraction(const TomlValue& value) {
+  return value.number(0, 1);
+}
 
-std::vector<float> floats(const std::vector<double>& values) { return {values.begin(), values.end()}; }
+std::vector<float> floats(const std::vector<double>& values) {
+  return {values.begin(), values.end()};
+}
 
 /// All faces of a mesh file as one mesh, in their order.
 Mesh read_flat_mesh(const std::string& file, double unit_m) {
@@ -41,7 +46,8 @@ void read_ground_plane(const TomlValue& table, const Scene& scene, Ground& groun
   } else {
     throw InputError(table.where("size"), "nothing", "[width, depth] of the ground [m]");
   }
-  if (scene.periodic) ground.centre = {0.5 * (scene.periodic->x_low + scene.periodic->x_high), 0.5 * (scene.periodic->y_low + scene.periodic->y_high)};
+  if (scene.periodic)
+    ground.centre = {0.5 * (scene.periodic->x_low + scene.periodic->x_high), 0.5 * (scene.periodic->y_low + scene.periodic->y_high)};
   if (const auto centre = table.get("center")) {
     const auto v = centre->numbers(2, "x, y [m]");
     ground.centre = {v[0], v[1]};
@@ -58,7 +64,8 @@ void read_ground_plane(const TomlValue& table, const Scene& scene, Ground& groun
 }  // namespace
 
 TomlSchema optics_schema(const TomlSchema& per_band) {
-  return TomlSchema::of({}, {{"reflectance", per_band}, {"reflectance_front", per_band}, {"reflectance_back", per_band}, {"transmittance", per_band}});
+  return TomlSchema::of(
+      {}, {{"reflectance", per_band}, {"reflectance_front", per_band}, {"reflectance_back", per_band}, {"transmittance", per_band}});
 }
 
 TomlSchema ground_schema(const TomlSchema& per_band) {
@@ -72,23 +79,31 @@ void read_optics(const TomlValue& root, Scene& scene) {
     Optics optics;
     optics.name = name;
     const auto both = table.get("reflectance"), front = table.get("reflectance_front"), back = table.get("reflectance_back");
-    if (both && (front || back)) (front ? front : back)->fail("a value beside `reflectance`", "either `reflectance`, or both of `reflectance_front` and `reflectance_back`");
+    if (both && (front || back))
+      (front ? front : back)
+          ->fail("a value beside `reflectance`", "either `reflectance`, or both of `reflectance_front` and `reflectance_back`");
     if (both) {
       optics.reflectance_front = optics.reflectance_back = floats(read_per_band(*both, scene, fraction));
     } else {
-      if (!front && !back) throw InputError(table.where("reflectance"), "nothing", "a reflectance per band, or `reflectance_front` and `reflectance_back`");
-      optics.reflectance_front = floats(read_per_band(table.need("reflectance_front", "a reflectance per band, as `reflectance_back` is given"), scene, fraction));
-      optics.reflectance_back = floats(read_per_band(table.need("reflectance_back", "a reflectance per band, as `reflectance_front` is given"), scene, fraction));
+      if (!front && !back)
+        throw InputError(table.where("reflectance"), "nothing", "a reflectance per band, or `reflectance_front` and `reflectance_back`");
+      optics.reflectance_front =
+          floats(read_per_band(table.need("reflectance_front", "a reflectance per band, as `reflectance_back` is given"), scene, fraction));
+      optics.reflectance_back =
+          floats(read_per_band(table.need("reflectance_back", "a reflectance per band, as `reflectance_front` is given"), scene, fraction));
     }
     const auto transmittance = table.get("transmittance");
-    optics.transmittance = transmittance ? floats(read_per_band(*transmittance, scene, fraction)) : std::vector<float>(scene.bands.size(), 0.0f);
+    optics.transmittance =
+        transmittance ? floats(read_per_band(*transmittance, scene, fraction)) : std::vector<float>(scene.bands.size(), 0.0f);
     for (std::size_t b = 0; b < scene.bands.size(); ++b)
       for (const auto* rho : {&optics.reflectance_front, &optics.reflectance_back}) {
         const float sum = (*rho)[b] + optics.transmittance[b];
         if (sum <= 1.0f + 1e-6f) continue;
         const bool is_front = rho == &optics.reflectance_front;
         const auto at = both ? *both : is_front ? *front : *back;
-        throw InputError(at.where(scene.bands[b]), fmt::format("reflectance {} + transmittance {} = {:.6g}", (*rho)[b], optics.transmittance[b], sum), "a sum of at most 1");
+        throw InputError(at.where(scene.bands[b]),
+                         fmt::format("reflectance {} + transmittance {} = {:.6g}", (*rho)[b], optics.transmittance[b], sum),
+                         "a sum of at most 1");
       }
     scene.optics.push_back(std::move(optics));
   }
@@ -106,6 +121,7 @@ void read_ground(const TomlValue& root, Scene& scene) {
     if (const auto unit = table->get("unit")) unit->fail("`unit` without `mesh`", "no unit: lengths of the scene are metres");
     read_ground_plane(*table, scene, ground);
   }
+  if (scene.periodic) check_ground_fills(ground, *scene.periodic, (table->get("mesh") ? *table->get("mesh") : *table).where());
   ground.optics.name = "ground";
   const auto reflectance = table->need("reflectance", "a reflectance per band");
   ground.optics.reflectance_front = ground.optics.reflectance_back = floats(read_per_band(reflectance, scene, fraction));

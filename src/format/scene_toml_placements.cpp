@@ -56,7 +56,8 @@ std::vector<std::size_t> read_header(const std::vector<std::string_view>& cells,
     while (c < csv_columns.size() && csv_columns[c] != cell) ++c;
     if (c == csv_columns.size()) {
       const std::string nearest = nearest_name(cell, csv_columns);
-      throw InputError(where, "column " + in_quotes(cell), "one of " + joined(csv_columns) + (nearest.empty() ? "" : "; did you mean \"" + nearest + "\"?"));
+      throw InputError(where, "column " + in_quotes(cell),
+                       "one of " + joined(csv_columns) + (nearest.empty() ? "" : "; did you mean \"" + nearest + "\"?"));
     }
     if (seen[c]) throw InputError(where, "column " + in_quotes(cell) + " twice", "every column once");
     seen[c] = true;
@@ -81,16 +82,19 @@ std::vector<Placement> read_positions(const std::string& file) {
       bool is_header = false;
       columns = read_header(cells, where, is_header);
       if (is_header) continue;
-      if (cells.size() < 2 || cells.size() > 5) throw InputError(where, fmt::format("{} numbers", cells.size()), "2 to 5: x, y, z, turn, scale");
+      if (cells.size() < 2 || cells.size() > 5)
+        throw InputError(where, fmt::format("{} numbers", cells.size()), "2 to 5: x, y, z, turn, scale");
       columns.resize(cells.size());
     }
-    if (cells.size() != columns.size()) throw InputError(where, fmt::format("{} cells", cells.size()), fmt::format("{}, as in the first line", columns.size()));
+    if (cells.size() != columns.size())
+      throw InputError(where, fmt::format("{} cells", cells.size()), fmt::format("{}, as in the first line", columns.size()));
     std::array<double, 8> v{0, 0, 0, 0, 1, 0, 0, 0};
     for (std::size_t c = 0; c < cells.size(); ++c)
       if (!to_number(cells[c], v[columns[c]]) || !std::isfinite(v[columns[c]]))
         throw InputError(location(file, lines.number(), csv_columns[columns[c]]), in_quotes(cells[c]), "a finite number");
     if (!(v[4] > 0)) throw InputError(location(file, lines.number(), "scale"), fmt::format("{}", v[4]), "a number above zero");
-    if (v[5] < 0 || v[5] > 180) throw InputError(location(file, lines.number(), "tilt"), fmt::format("{}", v[5]), "a number from 0 to 180 degrees");
+    if (v[5] < 0 || v[5] > 180)
+      throw InputError(location(file, lines.number(), "tilt"), fmt::format("{}", v[5]), "a number from 0 to 180 degrees");
     if (v[7] != 0 && v[7] != 1) throw InputError(location(file, lines.number(), "mirror"), fmt::format("{}", v[7]), "0 or 1");
     all.push_back(placed(Stance{{v[0], v[1], v[2]}, v[3], v[4], v[5], v[6], v[7] == 1}));
   }
@@ -106,7 +110,9 @@ TomlSchema placement_schema(const std::vector<std::string>& further_keys) {
   return TomlSchema::of(keys, {{"grid", grid_schema()}});
 }
 
-TomlSchema grid_schema() { return TomlSchema::of({"origin", "step", "count", "turn", "seed", "scale", "tilt", "tilt_azimuth", "mirror"}); }
+TomlSchema grid_schema() {
+  return TomlSchema::of({"origin", "step", "count", "turn", "seed", "scale", "tilt", "tilt_azimuth", "mirror"});
+}
 
 std::vector<Placement> read_grid(const TomlValue& grid) {
   Stance stance = read_stance(grid);
@@ -141,7 +147,8 @@ std::vector<Placement> read_placements(const TomlValue& entry, const Scene& scen
   const auto grid = entry.get("grid"), file = entry.get("file");
   if (grid || file) {
     for (const char* key : {"position", "turn", "scale", "tilt", "tilt_azimuth", "mirror"})
-      if (const auto value = entry.get(key)) value->fail(fmt::format("`{}` beside `{}`", key, grid ? "grid" : "file"), grid ? "it inside `grid`" : "it as a column of the file");
+      if (const auto value = entry.get(key))
+        value->fail(fmt::format("`{}` beside `{}`", key, grid ? "grid" : "file"), grid ? "it inside `grid`" : "it as a column of the file");
     if (grid && file) grid->fail("`grid` beside `file`", "one of them");
     return grid ? read_grid(*grid) : read_positions(read_path(*file, scene, "a CSV file with columns x, y, z, turn, scale"));
   }

@@ -33,11 +33,14 @@ std::shared_ptr<const Plant> read_shared(const TomlValue& table, const Scene& sc
   return plant;
 }
 
-std::string quoted_list(const std::vector<std::string>& names) {
-  constexpr std::size_t shown = 8;
+std::string listed(const std::map<std::string, std::string>& missing) {
+  constexpr std::size_t most = 6;
   std::string text;
-  for (std::size_t i = 0; i < std::min(names.size(), shown); ++i) text += (i ? ", \"" : "\"") + names[i] + '"';
-  if (names.size() > shown) text += fmt::format(" and {} more", names.size() - shown);
+  std::size_t shown = 0;
+  for (const auto& [what, example] : missing) {
+    if (shown++ == most) return text + fmt::format("; and {} more", missing.size() - most);
+    text += (text.empty() ? "" : "; ") + what + (example.empty() ? "" : fmt::format(" (such as \"{}\")", example));
+  }
   return text;
 }
 
@@ -67,7 +70,7 @@ class OpticsMap {
 
   std::vector<std::uint32_t> of_shapes(const Plant& plant, Scene& scene) {
     std::vector<std::uint32_t> rows;
-    std::vector<std::string> missing;
+    std::map<std::string, std::string> missing;  // type and material -> the first structure of them
     std::set<std::string> names;
     for (const auto& shape : plant.shapes) {
       const auto& structure = plant.structures[shape.structure];
@@ -81,11 +84,12 @@ class OpticsMap {
       if (entry) {
         rows.push_back(entry->row);
       } else {
-        const std::string what = material.empty() ? type : type + "\" of material \"" + material;
-        if (std::find(missing.begin(), missing.end(), what) == missing.end()) missing.push_back(what);
+        const std::string what = fmt::format("type \"{}\"", type) + (material.empty() ? "" : fmt::format(", material \"{}\"", material));
+        missing.try_emplace(what, structure.name);
       }
     }
-    if (!missing.empty()) table_.fail("no optics for " + quoted_list(missing), "each by structure name, type or material, or \"*\" for the rest");
+    if (!missing.empty())
+      table_.fail("no optics for " + listed(missing), "a key that is the type, material or name of each, or \"*\" for the rest");
     refuse_misspelt(plant, names, scene);
     return rows;
   }
@@ -140,7 +144,8 @@ class Names {
   /// What `plant = "..."` or `group = "..."` of an entry names.
   Target find(const TomlValue& entry) {
     const auto plant = entry.get("plant"), group = entry.get("group");
-    if (plant.has_value() == group.has_value()) throw InputError(entry.where(), plant ? "both `plant` and `group`" : "neither `plant` nor `group`", "one of them");
+    if (plant.has_value() == group.has_value())
+      throw InputError(entry.where(), plant ? "both `plant` and `group`" : "neither `plant` nor `group`", "one of them");
     const auto& value = plant ? *plant : *group;
     const std::string name = value.text(), kind = plant ? "plant" : "group";
     const auto at = targets_.find(name);
@@ -163,7 +168,9 @@ class Names {
   std::set<std::string> used_;
 };
 
-void append(std::vector<Placement>& all, std::vector<Placement> more) { all.insert(all.end(), more.begin(), more.end()); }
+void append(std::vector<Placement>& all, std::vector<Placement> more) {
+  all.insert(all.end(), more.begin(), more.end());
+}
 
 void read_plant_entries(const TomlValue& plants, Scene& scene, Names& names) {
   PlantCache cache;
@@ -171,7 +178,8 @@ void read_plant_entries(const TomlValue& plants, Scene& scene, Names& names) {
     PlantEntry entry;
     entry.name = names.add(table, false, scene.plants.size());
     entry.plant = read_shared(table, scene, cache);
-    entry.shape_optics = OpticsMap(table.need("optics", "which optics its organs have, like { Leaf = \"leaf\", \"*\" = \"bark\" }"), scene).of_shapes(*entry.plant, scene);
+    entry.shape_optics = OpticsMap(table.need("optics", "which optics its organs have, like { Leaf = \"leaf\", \"*\" = \"bark\" }"), scene)
+                             .of_shapes(*entry.plant, scene);
     if (const auto policy = table.get("policy")) entry.policy_file = read_path(*policy, scene, "a policy file");
     if (const auto place = table.get("place"))
       for (const auto& one : place->tables()) append(entry.placements, read_placements(one, scene));
@@ -217,10 +225,13 @@ TomlSchema plant_schema() {
                         {{"optics", TomlSchema::names(TomlSchema::leaf())}, {"place", placement_schema({})}, {"grid", grid_schema()}});
 }
 
-TomlSchema group_schema() { return TomlSchema::of({"name"}, {{"place", placement_schema({"plant", "group"})}}); }
+TomlSchema group_schema() {
+  return TomlSchema::of({"name"}, {{"place", placement_schema({"plant", "group"})}});
+}
 
 double read_unit(const TomlValue& owner) {
-  static const std::vector<std::pair<std::string, double>> units{{"m", 1.0}, {"cm", 0.01}, {"mm", 0.001}, {"inch", 0.0254}, {"foot", 0.3048}};
+  static const std::vector<std::pair<std::string, double>> units{
+      {"m", 1.0}, {"cm", 0.01}, {"mm", 0.001}, {"inch", 0.0254}, {"foot", 0.3048}};
   const auto unit = owner.get("unit");
   if (!unit) return 1.0;
   std::vector<std::string> names;
@@ -244,7 +255,8 @@ void read_plants_and_groups(const TomlValue& root, Scene& scene) {
   if (const auto place = root.get("place"))
     for (const auto& entry : place->tables()) {
       const auto target = names.find(entry);
-      append(target.is_group ? scene.groups[target.index].placements : scene.plants[target.index].placements, read_placements(entry, scene));
+      append(target.is_group ? scene.groups[target.index].placements : scene.plants[target.index].placements,
+             read_placements(entry, scene));
     }
   note_unplaced(scene, names);
 }

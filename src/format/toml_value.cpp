@@ -21,14 +21,18 @@ struct TomlParsed {
 
 namespace {
 
-const toml::node& node_of(const void* p) { return *static_cast<const toml::node*>(p); }
+const toml::node& node_of(const void* p) {
+  return *static_cast<const toml::node*>(p);
+}
 
 long line_of(const toml::node& node, long otherwise) {
   const auto line = static_cast<long>(node.source().begin.line);
   return line > 0 ? line : otherwise;
 }
 
-std::string joined_path(const std::string& path, const std::string& key) { return path.empty() ? key : path + "." + key; }
+std::string joined_path(const std::string& path, const std::string& key) {
+  return path.empty() ? key : path + "." + key;
+}
 
 /// A value for a message: short, on one line.
 std::string shown(const toml::node& node) {
@@ -52,17 +56,37 @@ TomlSchema TomlSchema::of(const std::vector<std::string>& plain, std::vector<std
   return schema;
 }
 
-long TomlValue::line() const { return line_; }
-std::string TomlValue::where() const { return location(document_->file, line_, path_); }
-std::string TomlValue::where(const std::string& key) const { return location(document_->file, line_, joined_path(path_, key)); }
-std::string TomlValue::found() const { return shown(node_of(node_)); }
-void TomlValue::fail(const std::string& expected) const { throw InputError(where(), found(), expected); }
-void TomlValue::fail(const std::string& found, const std::string& expected) const { throw InputError(where(), found, expected); }
+long TomlValue::line() const {
+  return line_;
+}
+std::string TomlValue::where() const {
+  return location(document_->file, line_, path_);
+}
+std::string TomlValue::where(const std::string& key) const {
+  return location(document_->file, line_, joined_path(path_, key));
+}
+std::string TomlValue::found() const {
+  return shown(node_of(node_));
+}
+void TomlValue::fail(const std::string& expected) const {
+  throw InputError(where(), found(), expected);
+}
+void TomlValue::fail(const std::string& found, const std::string& expected) const {
+  throw InputError(where(), found, expected);
+}
 
-bool TomlValue::is_table() const { return node_of(node_).is_table(); }
-bool TomlValue::is_array() const { return node_of(node_).is_array(); }
-bool TomlValue::is_text() const { return node_of(node_).is_string(); }
-bool TomlValue::is_date_time() const { return node_of(node_).is_date_time() || node_of(node_).is_date() || node_of(node_).is_time(); }
+bool TomlValue::is_table() const {
+  return node_of(node_).is_table();
+}
+bool TomlValue::is_array() const {
+  return node_of(node_).is_array();
+}
+bool TomlValue::is_text() const {
+  return node_of(node_).is_string();
+}
+bool TomlValue::is_date_time() const {
+  return node_of(node_).is_date_time() || node_of(node_).is_date() || node_of(node_).is_time();
+}
 
 std::optional<TomlValue> TomlValue::get(const std::string& key) const {
   const auto* table = node_of(node_).as_table();
@@ -189,14 +213,21 @@ TomlDocument::TomlDocument(const std::string& file) : parsed_(std::make_unique<T
   try {
     parsed_->root = toml::parse(std::string_view(parsed_->text), std::string_view(file));
   } catch (const toml::parse_error& error) {
-    throw InputError(fmt::format("{}: not valid TOML: {}", location(file, static_cast<long>(error.source().begin.line)), error.description()));
+    throw InputError(
+        fmt::format("{}: not valid TOML: {}", location(file, static_cast<long>(error.source().begin.line)), error.description()));
   }
 }
 
 TomlDocument::~TomlDocument() = default;
-const std::string& TomlDocument::file() const { return parsed_->file; }
-const std::string& TomlDocument::text() const { return parsed_->text; }
-TomlValue TomlDocument::root() const { return TomlValue(parsed_.get(), &parsed_->root, 1, ""); }
+const std::string& TomlDocument::file() const {
+  return parsed_->file;
+}
+const std::string& TomlDocument::text() const {
+  return parsed_->text;
+}
+TomlValue TomlDocument::root() const {
+  return TomlValue(parsed_.get(), &parsed_->root, 1, "");
+}
 
 namespace {
 

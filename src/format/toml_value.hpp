@@ -15,9 +15,9 @@ struct TomlParsed;  // toml++'s document: known to toml_value.cpp only, for the 
 /// Which keys a table may have. Keys without a schema of their own may hold anything.
 struct TomlSchema {
   std::vector<std::pair<std::string, TomlSchema>> keys;
-  bool any_key = false;              ///< keys are names that the user chooses ...
-  std::vector<TomlSchema> of_any;    ///< ... and this (none or one) is the schema of what they hold
-  bool open = false;                 ///< nothing below is looked at
+  bool any_key = false;            ///< keys are names that the user chooses ...
+  std::vector<TomlSchema> of_any;  ///< ... and this (none or one) is the schema of what they hold
+  bool open = false;               ///< nothing below is looked at
 
   static TomlSchema leaf() { return {{}, false, {}, true}; }
   static TomlSchema names(TomlSchema below) { return {{}, true, {std::move(below)}, false}; }
@@ -49,15 +49,15 @@ class TomlValue {
   std::vector<TomlValue> items() const;                            ///< of an array
   std::vector<TomlValue> tables() const;                           ///< of an array of tables; a single table counts as one
 
-  double number() const;                                                               ///< finite, integer or float
-  double number(double low, double high, const std::string& unit = {}) const;          ///< in [low, high]
-  double positive(const std::string& unit = {}) const;                                 ///< > 0
+  double number() const;                                                       ///< finite, integer or float
+  double number(double low, double high, const std::string& unit = {}) const;  ///< in [low, high]
+  double positive(const std::string& unit = {}) const;                         ///< > 0
   std::int64_t integer(std::int64_t low, std::int64_t high) const;
   bool flag() const;
-  std::string text() const;                                                            ///< not empty
+  std::string text() const;  ///< not empty
   std::string one_of(const std::vector<std::string>& names) const;
-  std::string date_time() const;                                                       ///< a string, or a TOML date-time as ISO 8601
-  std::vector<double> numbers(std::size_t count, const std::string& names) const;      ///< exactly `count`; names: "x, y, z [m]"
+  std::string date_time() const;                                                   ///< a string, or a TOML date-time as ISO 8601
+  std::vector<double> numbers(std::size_t count, const std::string& names) const;  ///< exactly `count`; names: "x, y, z [m]"
 
  private:
   friend class TomlDocument;

@@ -39,7 +39,8 @@ PlantEntry plant_entry(const std::string& name, Plant plant, std::uint32_t optic
   return entry;
 }
 
-Ground flat_ground(std::array<double, 2> size, std::array<double, 2> centre, std::array<std::uint32_t, 2> cells, const std::vector<double>& reflectance) {
+Ground flat_ground(std::array<double, 2> size, std::array<double, 2> centre, std::array<std::uint32_t, 2> cells,
+                   const std::vector<double>& reflectance) {
   Ground ground;
   ground.size = size;
   ground.centre = centre;

@@ -40,9 +40,11 @@ class Check {
   }
 
   void irradiance(const std::vector<double>& values, const std::string& key) const {
-    if (values.size() != scene_.bands.size()) fail(key, fmt::format("{} values", values.size()), fmt::format("one per band, {}", scene_.bands.size()));
+    if (values.size() != scene_.bands.size())
+      fail(key, fmt::format("{} values", values.size()), fmt::format("one per band, {}", scene_.bands.size()));
     for (std::size_t b = 0; b < values.size(); ++b)
-      if (!(values[b] >= 0) || std::isinf(values[b])) fail(key + "." + scene_.bands[b], fmt::format("{}", values[b]), "a finite number of zero or more");
+      if (!(values[b] >= 0) || std::isinf(values[b]))
+        fail(key + "." + scene_.bands[b], fmt::format("{}", values[b]), "a finite number of zero or more");
   }
 
   void light() const {
@@ -50,12 +52,15 @@ class Check {
     for (std::size_t s = 0; s < scene_.states.size(); ++s) {
       const auto& state = scene_.states[s];
       const std::string key = fmt::format("state[{}]", s);
-      if (!(state.duration_s >= 0) || std::isinf(state.duration_s)) fail(key + ".duration_s", fmt::format("{}", state.duration_s), "a finite number of zero or more seconds");
+      if (!(state.duration_s >= 0) || std::isinf(state.duration_s))
+        fail(key + ".duration_s", fmt::format("{}", state.duration_s), "a finite number of zero or more seconds");
       if (state.sun) {
         const auto& sun = *state.sun;
-        if (!(std::abs(glm::length(sun.direction) - 1.0) < 1e-6)) fail(key + ".sun.direction", fmt::format("a vector of length {}", glm::length(sun.direction)), "a unit vector");
+        if (!(std::abs(glm::length(sun.direction) - 1.0) < 1e-6))
+          fail(key + ".sun.direction", fmt::format("a vector of length {}", glm::length(sun.direction)), "a unit vector");
         if (!(sun.direction.z > 0)) fail(key + ".sun.direction", "a sun at or below the horizon", "no sun, or one above the horizon");
-        if (!(sun.angular_diameter_deg >= 0 && sun.angular_diameter_deg <= 90)) fail(key + ".sun.angular_diameter_deg", fmt::format("{}", sun.angular_diameter_deg), "0 to 90 degrees");
+        if (!(sun.angular_diameter_deg >= 0 && sun.angular_diameter_deg <= 90))
+          fail(key + ".sun.angular_diameter_deg", fmt::format("{}", sun.angular_diameter_deg), "0 to 90 degrees");
         irradiance(sun.irradiance, key + ".sun.irradiance");
       }
       if (state.sky) irradiance(state.sky->irradiance, key + ".sky.irradiance");
@@ -64,7 +69,8 @@ class Check {
 
   void optical(const Optics& optics, const std::string& key) const {
     const auto values = [&](const std::vector<float>& v, const char* name) {
-      if (v.size() != scene_.bands.size()) fail(key + "." + name, fmt::format("{} values", v.size()), fmt::format("one per band, {}", scene_.bands.size()));
+      if (v.size() != scene_.bands.size())
+        fail(key + "." + name, fmt::format("{} values", v.size()), fmt::format("one per band, {}", scene_.bands.size()));
       for (std::size_t b = 0; b < v.size(); ++b)
         if (!(v[b] >= 0 && v[b] <= 1)) fail(key + "." + name + "." + scene_.bands[b], fmt::format("{}", v[b]), "a number from 0 to 1");
     };
@@ -74,44 +80,34 @@ class Check {
     for (std::size_t b = 0; b < scene_.bands.size(); ++b)
       for (const auto* rho : {&optics.reflectance_front, &optics.reflectance_back})
         if ((*rho)[b] + optics.transmittance[b] > 1.0f + rounding)
-          fail(key + "." + scene_.bands[b], fmt::format("reflectance {} + transmittance {} = {:.6g}", (*rho)[b], optics.transmittance[b], (*rho)[b] + optics.transmittance[b]),
+          fail(key + "." + scene_.bands[b],
+               fmt::format("reflectance {} + transmittance {} = {:.6g}", (*rho)[b], optics.transmittance[b],
+                           (*rho)[b] + optics.transmittance[b]),
                "a sum of at most 1");
   }
 
   void cell(const PeriodicCell& cell) const {
     for (const double v : {cell.x_low, cell.y_low, cell.x_high, cell.y_high})
       if (!std::isfinite(v)) fail("domain.periodic", fmt::format("{}", v), "finite numbers");
-    if (!(cell.width() > 0 && cell.depth() > 0)) fail("domain.periodic", fmt::format("a cell of {} by {} m", cell.width(), cell.depth()), "lengths above zero");
+    if (!(cell.width() > 0 && cell.depth() > 0))
+      fail("domain.periodic", fmt::format("a cell of {} by {} m", cell.width(), cell.depth()), "lengths above zero");
   }
 
   void ground(const Ground& ground) const {
     optical(ground.optics, "ground.optics");
     for (const float tau : ground.optics.transmittance)
       if (tau != 0) fail("ground.optics.transmittance", fmt::format("{}", tau), "0: ground lets nothing through");
-    double x_low, y_low, x_high, y_high;
     if (ground.mesh) {
       check_mesh(*ground.mesh, location(scene_.file, 0, "ground.mesh"));
       if (ground.mesh->triangles.empty()) fail("ground.mesh", "no face", "at least one triangle");
-      Box box;
-      for (const auto& t : ground.mesh->triangles)
-        for (const auto i : t) box.add(ground.mesh->vertices[i]);
-      x_low = box.low.x, y_low = box.low.y, x_high = box.high.x, y_high = box.high.y;
     } else {
       for (const double v : {ground.size[0], ground.size[1]})
         if (!(v > 0) || std::isinf(v)) fail("ground.size", fmt::format("{}", v), "a finite length above zero [m]");
       for (const double v : {ground.centre[0], ground.centre[1], ground.height})
         if (!std::isfinite(v)) fail("ground.center", fmt::format("{}", v), "finite numbers");
       if (ground.cells[0] == 0 || ground.cells[1] == 0) fail("ground.cells", "0", "at least one cell along x and y");
-      x_low = ground.centre[0] - 0.5 * ground.size[0], x_high = ground.centre[0] + 0.5 * ground.size[0];
-      y_low = ground.centre[1] - 0.5 * ground.size[1], y_high = ground.centre[1] + 0.5 * ground.size[1];
     }
-    if (!scene_.periodic) return;
-    // Meshes may come in single precision and in other units: 1e-5 of the cell is their rounding, not a gap.
-    const auto& c = *scene_.periodic;
-    const double near = 1e-5 * std::max(c.width(), c.depth());
-    if (std::abs(x_low - c.x_low) > near || std::abs(x_high - c.x_high) > near || std::abs(y_low - c.y_low) > near || std::abs(y_high - c.y_high) > near)
-      fail(ground.mesh ? "ground.mesh" : "ground.size", fmt::format("ground from ({:.6g}, {:.6g}) to ({:.6g}, {:.6g})", x_low, y_low, x_high, y_high),
-           fmt::format("ground that fills the periodic cell, ({:.6g}, {:.6g}) to ({:.6g}, {:.6g})", c.x_low, c.y_low, c.x_high, c.y_high));
+    if (scene_.periodic) check_ground_fills(ground, *scene_.periodic, location(scene_.file, 0, "ground"));
   }
 
   void placement(const Placement& placement, const std::string& key) const {
@@ -130,9 +126,11 @@ class Check {
       if (!entry.plant) fail(key, "no plant", "a plant");
       if (checked.insert(entry.plant.get()).second) check_plant(*entry.plant);
       if (entry.shape_optics.size() != entry.plant->shapes.size())
-        fail(key + ".shape_optics", fmt::format("{} rows", entry.shape_optics.size()), fmt::format("one per shape, {}", entry.plant->shapes.size()));
+        fail(key + ".shape_optics", fmt::format("{} rows", entry.shape_optics.size()),
+             fmt::format("one per shape, {}", entry.plant->shapes.size()));
       for (const auto row : entry.shape_optics)
-        if (row >= scene_.optics.size()) fail(key + ".shape_optics", fmt::format("row {}", row), fmt::format("a row of the scene's {} optics", scene_.optics.size()));
+        if (row >= scene_.optics.size())
+          fail(key + ".shape_optics", fmt::format("row {}", row), fmt::format("a row of the scene's {} optics", scene_.optics.size()));
       for (std::size_t i = 0; i < entry.placements.size(); ++i) placement(entry.placements[i], fmt::format("{}.place[{}]", key, i));
     }
   }
@@ -145,10 +143,13 @@ class Check {
         const auto& member = group.members[i];
         const std::size_t rows = member.is_group ? scene_.groups.size() : scene_.plants.size();
         const std::string member_key = fmt::format("{}.place[{}]", key, i);
-        if (member.index >= rows) fail(member_key, fmt::format("{} number {}", member.is_group ? "group" : "plant", member.index), fmt::format("a number below {}", rows));
+        if (member.index >= rows)
+          fail(member_key, fmt::format("{} number {}", member.is_group ? "group" : "plant", member.index),
+               fmt::format("a number below {}", rows));
         placement(member.placement, member_key);
       }
-      for (std::size_t i = 0; i < group.placements.size(); ++i) placement(group.placements[i], fmt::format("{} in the world, copy {}", key, i));
+      for (std::size_t i = 0; i < group.placements.size(); ++i)
+        placement(group.placements[i], fmt::format("{} in the world, copy {}", key, i));
     }
     const auto cycle = group_cycle(scene_);
     if (cycle.empty()) return;
@@ -163,6 +164,28 @@ class Check {
 
 }  // namespace
 
-void check_scene(const Scene& scene) { Check(scene).run(); }
+void check_ground_fills(const Ground& ground, const PeriodicCell& cell, const std::string& where) {
+  Box box;
+  if (ground.mesh) {
+    for (const auto& t : ground.mesh->triangles)
+      for (const auto i : t) box.add(ground.mesh->vertices[i]);
+  } else {
+    const Vec3 centre{ground.centre[0], ground.centre[1], ground.height}, half{0.5 * ground.size[0], 0.5 * ground.size[1], 0.0};
+    box.add(centre - half);
+    box.add(centre + half);
+  }
+  // Meshes may come in single precision and in other units: 1e-5 of the cell is their rounding, not a gap.
+  const double near = 1e-5 * std::max(cell.width(), cell.depth());
+  if (std::abs(box.low.x - cell.x_low) <= near && std::abs(box.high.x - cell.x_high) <= near && std::abs(box.low.y - cell.y_low) <= near &&
+      std::abs(box.high.y - cell.y_high) <= near)
+    return;
+  throw InputError(where, fmt::format("ground from ({:.6g}, {:.6g}) to ({:.6g}, {:.6g})", box.low.x, box.low.y, box.high.x, box.high.y),
+                   fmt::format("ground that fills the periodic cell, ({:.6g}, {:.6g}) to ({:.6g}, {:.6g})", cell.x_low, cell.y_low,
+                               cell.x_high, cell.y_high));
+}
+
+void check_scene(const Scene& scene) {
+  Check(scene).run();
+}
 
 }  // namespace sunfleck

@@ -1,7 +1,8 @@
 // Scenes made in memory: the same parts that the scene file names, as functions.
 #pragma once
 
-#include <memory>
+#include <array>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -29,7 +30,11 @@ Optics uniform_optics(const std::string& name, const std::vector<double>& reflec
 PlantEntry plant_entry(const std::string& name, Plant plant, std::uint32_t optics, std::vector<Placement> placements);
 
 /// Flat ground; in a periodic scene pass its cell's size and centre.
-Ground flat_ground(std::array<double, 2> size, std::array<double, 2> centre, std::array<std::uint32_t, 2> cells, const std::vector<double>& reflectance);
+Ground flat_ground(std::array<double, 2> size, std::array<double, 2> centre, std::array<std::uint32_t, 2> cells,
+                   const std::vector<double>& reflectance);
+
+/// Throws InputError(where, ...) unless the ground spans the periodic cell in x and y.
+void check_ground_fills(const Ground& ground, const PeriodicCell& cell, const std::string& where);
 
 /// Rows of Scene::groups that hold each other in a circle, the first one repeated at the end; empty if there is none.
 std::vector<std::uint32_t> group_cycle(const Scene& scene);
