@@ -27,6 +27,40 @@ namespace {
 
 enum ExitCode { done = 0, failed = 1, bad_input = 2, stopped = 4 };  // 3, not converged, is a verb's own answer
 
+/// What a number may be, for the check and for the help text. CLI11's own ranges let NaN pass and do not say what they found.
+CLI::Validator number_between(double low, double high, bool whole = false) {
+  const bool open_above = high == std::numeric_limits<double>::infinity();
+  const std::string allowed = fmt::format("a {}number {}", whole ? "whole " : "",
+                                          open_above ? fmt::format("of at least {}", low) : fmt::format("from {} to {}", low, high));
+  return CLI::Validator(
+      [=](std::string& text) {
+        char* end = nullptr;
+        const double value = std::strtod(text.c_str(), &end);
+        const bool is_number = !text.empty() && *end == '\0' && std::isfinite(value) && (!whole || value == std::floor(value));
+        const bool plain = !whole || text.find_first_not_of("0123456789") == std::string::npos;  // "1e3" would not convert
+        if (is_number && plain && value >= low && value <= high) return std::string();
+        return fmt::format("found '{}'; expected {}", text, allowed);
+      },
+      "");
+}
+[[maybe_unused]] CLI::Validator count_from(double low, double high = 9007199254740992.0) {
+  return number_between(low, high, true);
+}
+
+constexpr double unlimited = std::numeric_limits<double>::infinity();
+
+/// One of a few names; says which is nearest.
+CLI::Validator one_of(std::vector<std::string> names) {
+  return CLI::Validator(
+      [names](std::string& text) {
+        for (const auto& name : names)
+          if (text == name) return std::string();
+        const std::string near = nearest_name(text, names);
+        return fmt::format("found '{}'; expected one of {}{}", text, joined(names), near.empty() ? "" : " (did you mean '" + near + "'?)");
+      },
+      "");
+}
+
 /// Options and what runs them, one per verb.
 struct Verbs {
   SolveOptions solve;
@@ -37,6 +71,23 @@ struct Verbs {
   GenerateOptions generate;
   InfoOptions info;
 };
+
+constexpr const char* method_help =
+    "how scattered light is found: 'clustering' (cluster tree and links; the default), 'flat' (every facet with every other it "
+    "sees), 'direct' (no scattering) or 'reference' (path tracing)";
+constexpr const char* quality_help = "accuracy against time: 'draft', 'standard' (the default) or 'fine'";
+const std::vector<std::string> qualities{"draft", "standard", "fine"};
+
+void add_plan(CLI::App& verb, PlanOptions& o) {
+  verb.add_option("SCENE", o.scene, "scene file, TOML")->required()->type_name("");
+  verb.add_option("--method", o.method, method_help)->type_name("NAME");
+  verb.add_option("--quality", o.quality, quality_help)->type_name("NAME")->check(one_of(qualities));
+  verb.add_flag("--json", o.json, "print JSON instead of text");
+  verb.footer(
+      "Examples:\n"
+      "  sunfleck plan field.toml\n"
+      "  sunfleck plan field.toml --quality fine --json");
+}
 
 std::string hint(const std::string& found, const std::vector<std::string>& known) {
   const std::string near = nearest_name(found, known);
@@ -56,10 +107,13 @@ class Program {
   Program() {
     app_.set_version_flag("--version", "sunfleck " + software_version(), "print the version and exit");
     app_.require_subcommand(1);
+    app_.get_formatter()->label("SUBCOMMAND", "VERB");
+    app_.get_formatter()->label("Subcommands", "Verbs");
     app_.set_help_flag("-h,--help", "print this help and exit");
     app_.footer(
         "Each verb has its own help: sunfleck VERB --help. Data go to standard output, progress and messages to standard error.\n"
         "Exit codes: 0 done, 1 output failed, 2 bad usage or input, 3 did not converge (the result is written), 4 stopped.");
+    add("plan", "what a solve would do and leave out, its memory and work, without solving", add_plan, verbs_.plan, verb_plan);
   }
 
   int run(int argc, char** argv) {

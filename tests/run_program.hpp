@@ -1,0 +1,33 @@
+// Runs the built program as its user would and keeps what it says.
+#pragma once
+
+#include <string>
+#include <vector>
+
+struct ProgramRun {
+  int exit_code = -1;  ///< 128 + signal if it was killed
+  std::string out, err;
+};
+
+/// Runs build/.../sunfleck with the arguments given; `kill_after_s` > 0 sends it `signal` after so many seconds.
+ProgramRun run_sunfleck(const std::vector<std::string>& arguments, double kill_after_s = 0.0, int signal = 15);
+
+/// A folder of its own under the system's temporary folder; removed with all it holds at the end.
+class TemporaryFolder {
+ public:
+  TemporaryFolder();
+  ~TemporaryFolder();
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+  std::string path(const std::string& name) const { return folder_ + "/" + name; }
+  /// Writes a file and returns its path.
+  std::string file(const std::string& name, const std::string& text) const;
+  /// Names of what it holds, sorted.
+  std::vector<std::string> listing() const;
+
+ private:
+  std::string folder_;
+};
+
+std::string text_of(const std::string& file);
