@@ -21,7 +21,8 @@ Plant read_by_suffix(const std::string& file) {
   if (suffix == ".obj") return read_obj(file);
   if (suffix == ".ply") return read_ply(file);
   if (suffix == ".can") return read_can(file);
-  throw InputError(file, suffix.empty() ? "no suffix" : "suffix " + in_quotes(suffix), ".opf, .obj, .ply or .can");
+  if (suffix == ".h5") return read_plant_h5(file);
+  throw InputError(file, suffix.empty() ? "no suffix" : "suffix " + in_quotes(suffix), ".opf, .obj, .ply, .can or .h5");
 }
 
 }  // namespace
