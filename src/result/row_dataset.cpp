@@ -10,7 +10,7 @@ namespace sunfleck::h5 {
 
 namespace {
 
-constexpr std::size_t small_bytes = std::size_t{16} << 10;    // below: stored in one piece, uncompressed
+constexpr std::size_t small_bytes = std::size_t{64} << 10;    // below: stored in one piece, uncompressed
 constexpr std::size_t chunk_bytes = std::size_t{256} << 10;   // large enough for deflate, small enough for reading a range
 constexpr std::size_t batch_bytes = std::size_t{16} << 20;    // chunks in flight
 constexpr std::uint32_t deflate_skipped = 1u << 1;            // filter 0 is shuffle, filter 1 deflate

@@ -1,0 +1,173 @@
+#include <sunfleck/result/compare.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include <sunfleck/core/error.hpp>
+#include <sunfleck/core/names.hpp>
+
+namespace sunfleck {
+
+namespace {
+
+constexpr double least_absorbed = 1e-6;  // of the incident light; below it irradiance is compared
+constexpr std::size_t rows_at_once = std::size_t{1} << 18;
+
+/// The sums of BandError's formulas.
+struct Sums {
+  double weight = 0, reference = 0, difference = 0, squares = 0, variance = 0, maximum = 0;
+  std::size_t count = 0;
+
+  void add(double w, double x, double r, double var) {
+    const double d = x - r;
+    weight += w;
+    reference += w * r;
+    difference += w * d;
+    squares += w * d * d;
+    variance += w * var;
+    maximum = std::max(maximum, std::abs(d));
+    ++count;
+  }
+  void add(const Sums& other) {
+    weight += other.weight;
+    reference += other.reference;
+    difference += other.difference;
+    squares += other.squares;
+    variance += other.variance;
+    maximum = std::max(maximum, other.maximum);
+    count += other.count;
+  }
+  BandError error(bool irradiance) const {
+    BandError e;
+    e.irradiance = irradiance;
+    e.count = count;
+    if (weight <= 0) return e;
+    e.mean = reference / weight;
+    if (e.mean <= 0) return e;
+    e.bias = difference / weight / e.mean;
+    e.rmse = std::sqrt(std::max(0.0, squares / weight - variance / weight)) / e.mean;
+    e.maximum = maximum / e.mean;
+    e.noise = std::sqrt(variance / weight) / e.mean;
+    return e;
+  }
+};
+
+class Comparing {
+ public:
+  Comparing(const Result& result, const Result& reference) : x_(result), r_(reference), states_(reference.states().size()), bands_(reference.bands().size()) {
+    check_same_scene();
+    choose_quantities();
+  }
+
+  ErrorTable organs() const {
+    const std::size_t m = r_.organ_count();
+    const auto area = r_.rows<float>("organs/area", 0, m);
+    const auto structure = r_.rows<std::uint32_t>("organs/structure", 0, m);
+    return table("organs", "variance/organs", m, true, [&](std::size_t o) { return structure[o] == no_parent ? 0.0 : double{area[o]}; });
+  }
+
+  ErrorTable facets() const {
+    const std::size_t n = std::min(r_.facet_count(), x_.facet_count());
+    if (n == 0) return {};
+    for (const auto* file : {&x_, &r_})
+      if (!file->has("facets/absorbed") || (any_irradiance_ && !file->has("facets/irradiance"))) return {};
+    const auto structure = r_.rows<std::uint32_t>("organs/structure", 0, r_.organ_count());
+    const auto area = r_.rows<float>("facets/area", 0, n);
+    const auto organ = r_.facet_organs(0, n);
+    return table("facets", "variance/facets", n, false, [&](std::size_t f) { return structure[organ[f]] == no_parent ? 0.0 : double{area[f]}; });
+  }
+
+ private:
+  [[noreturn]] void differ(const std::string& found, const std::string& expected) const {
+    throw InputError(x_.file(), found, expected + " as in " + r_.file() + "; only results of the same scene can be compared");
+  }
+
+  void check_same_scene() const {
+    if (x_.bands() != r_.bands()) differ("bands " + joined(x_.bands()), "bands " + joined(r_.bands()));
+    if (x_.states().size() != states_) differ(fmt::format("{} lighting states", x_.states().size()), fmt::format("{}", states_));
+    if (x_.organ_count() != r_.organ_count()) differ(fmt::format("{} organs", x_.organ_count()), fmt::format("{}", r_.organ_count()));
+    if (x_.facet_count() != r_.facet_count() && x_.facet_count() > 0 && r_.facet_count() > 0)
+      differ(fmt::format("{} facets", x_.facet_count()), fmt::format("{}", r_.facet_count()));
+    const auto a = x_.rows<float>("organs/area", 0, x_.organ_count()), b = r_.rows<float>("organs/area", 0, r_.organ_count());
+    for (std::size_t o = 0; o < a.size(); ++o)
+      if (std::abs(a[o] - b[o]) > 1e-4f * std::max(a[o], b[o])) differ(fmt::format("organ {} with an area of {} m^2", o, a[o]), fmt::format("{} m^2", b[o]));
+  }
+
+  /// Absorbed or irradiance, per state and band and for all states together.
+  void choose_quantities() {
+    const auto balance = r_.balance();
+    const auto dark = [](double leaves, double incident) { return incident > 0 && leaves < least_absorbed * incident; };
+    for (std::size_t b = 0; b < bands_; ++b) {
+      double leaves = 0, incident = 0;
+      for (std::size_t s = 0; s < states_; ++s) {
+        leaves += balance[s][b].leaves;
+        incident += balance[s][b].incident;
+        state_irradiance_.push_back(0);
+      }
+      overall_irradiance_.push_back(dark(leaves, incident));
+      any_irradiance_ = any_irradiance_ || overall_irradiance_.back();
+    }
+    for (std::size_t s = 0; s < states_; ++s)
+      for (std::size_t b = 0; b < bands_; ++b) {
+        state_irradiance_[s * bands_ + b] = dark(balance[s][b].leaves, balance[s][b].incident);
+        any_irradiance_ = any_irradiance_ || state_irradiance_[s * bands_ + b];
+      }
+  }
+
+  /// `power`: absorbed is in W and becomes W m^-2 (and its variance likewise). `weight(row)` is its area, 0 = not compared.
+  template <class Weight>
+  ErrorTable table(const std::string& group, const std::string& variance, std::size_t rows, bool power, Weight weight) const {
+    std::vector<Sums> absorbed(states_ * bands_), irradiance(states_ * bands_);
+    for (std::size_t s = 0; s < states_; ++s)
+      for (std::size_t first = 0; first < rows; first += rows_at_once) {
+        const std::size_t count = std::min(rows_at_once, rows - first);
+        const auto read = [&](const Result& file, const std::string& name) { return file.state_rows<float>(name, s, first, count); };
+        const auto x = read(x_, group + "/absorbed"), r = read(r_, group + "/absorbed");
+        std::vector<float> no_values;
+        const auto var_x = x_.has(variance) ? read(x_, variance) : no_values, var_r = r_.has(variance) ? read(r_, variance) : no_values;
+        const auto e_x = any_irradiance_ ? read(x_, group + "/irradiance") : no_values, e_r = any_irradiance_ ? read(r_, group + "/irradiance") : no_values;
+        for (std::size_t i = 0; i < count; ++i) {
+          const double w = weight(first + i);
+          if (w <= 0) continue;
+          const double scale = power ? 1.0 / w : 1.0;
+          for (std::size_t b = 0; b < bands_; ++b) {
+            const std::size_t at = i * bands_ + b, front = 2 * i * bands_ + b, back = front + bands_;
+            const double var = (var_x.empty() ? 0.0 : var_x[at]) + (var_r.empty() ? 0.0 : var_r[at]);
+            absorbed[s * bands_ + b].add(w, x[at] * scale, r[at] * scale, var * scale * scale);
+            if (any_irradiance_) irradiance[s * bands_ + b].add(w, double{e_x[front]} + e_x[back], double{e_r[front]} + e_r[back], 0.0);
+          }
+        }
+      }
+    ErrorTable out;
+    for (std::size_t b = 0; b < bands_; ++b) {
+      Sums all;
+      for (std::size_t s = 0; s < states_; ++s) all.add(overall_irradiance_[b] ? irradiance[s * bands_ + b] : absorbed[s * bands_ + b]);
+      out.overall.push_back(all.error(overall_irradiance_[b]));
+    }
+    for (std::size_t s = 0; s < states_; ++s) {
+      auto& row = out.states.emplace_back();
+      for (std::size_t b = 0; b < bands_; ++b) {
+        const bool e = state_irradiance_[s * bands_ + b];
+        row.push_back((e ? irradiance : absorbed)[s * bands_ + b].error(e));
+      }
+    }
+    return out;
+  }
+
+  const Result& x_;
+  const Result& r_;
+  std::size_t states_, bands_;
+  std::vector<char> overall_irradiance_, state_irradiance_;  ///< [b], [s][b]
+  bool any_irradiance_ = false;
+};
+
+}  // namespace
+
+Comparison compare(const Result& result, const Result& reference) {
+  const Comparing comparing(result, reference);
+  return {comparing.organs(), comparing.facets()};
+}
+
+}  // namespace sunfleck
