@@ -1,0 +1,40 @@
+// Radiosity of a whole scene on one level: direct light, links from global lines, iteration, irradiance of every facet.
+#pragma once
+
+#include <sunfleck/core/progress.hpp>
+#include <sunfleck/scene/facets.hpp>
+#include <sunfleck/scene/solution.hpp>
+
+namespace sunfleck {
+
+enum class RadiosityMethod {
+  clustering,  ///< elements and clusters follow the structures; links at the level that an error estimate allows
+  flat,        ///< every facet with every other it sees, no hierarchy
+  direct       ///< sun and sky only, no scattering
+};
+
+/// Sampling densities; each quality has its own set (radiosity/quality.cpp).
+struct RadiosityDensity {
+  std::uint32_t directions;      ///< global-line directions over the hemisphere [-]
+  double lines_per_element;      ///< mean lines that meet an element, per direction [-]
+  double elements_per_organ;     ///< elements of an organ of the area-weighted mean size [-]
+  std::uint32_t sky_directions;  ///< directions for the sky's visibility [-]
+  double sky_lines_per_organ;    ///< per direction [-]
+  std::uint32_t sun_samples;     ///< points of the sun's disc, each with a grid of its own [-]
+  double sun_lines_per_organ;    ///< over all sun samples together [-]
+  double link_error;             ///< threshold of the refinement oracle, relative to the mean irradiance [-]
+  double tolerance;              ///< relative true residual of the iteration [-]
+};
+RadiosityDensity density_of(Quality quality);
+
+struct RadiositySettings : SolveSettings {
+  RadiosityMethod method = RadiosityMethod::clustering;
+  RadiosityDensity density = density_of(Quality::standard);
+};
+
+/// Solves E = E0 + F R E for the irradiance E of both sides of every facet, all bands and lighting states together
+/// (bi-Lambertian: B_f = rho_f E_f + tau E_b, B_b = rho_b E_b + tau E_f), and hands the rows to the sink in facet order.
+/// docs/theory.md describes the method. Throws Stopped; InputError if there is nothing to project.
+SolveReport solve_radiosity(const Scene& scene, const FacetScene& facets, const RadiositySettings& settings, IrradianceSink& sink, Progress& progress);
+
+}  // namespace sunfleck

@@ -1,0 +1,47 @@
+// Triangles prepared for parallel projection: single precision about a local origin, structure of arrays.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include <sunfleck/scene/facets.hpp>
+
+namespace sunfleck {
+
+/// What is projected. A triangle is split into `split^2` congruent *cells*, numbered from `first_cell`; cells are the finest
+/// pieces whose light is told apart. Coordinates are relative to `origin` [m].
+struct Surface {
+  Vec3 origin{0.0};
+  std::array<std::vector<float>, 9> corner;  ///< x0 y0 z0 x1 y1 z1 x2 y2 z2, each [n]
+  std::array<std::vector<float>, 3> normal;  ///< unit front normal, each [n]; zero where the area is zero
+  std::vector<std::uint32_t> first_cell;     ///< [n + 1]
+  std::vector<std::uint16_t> split;          ///< [n] >= 1; 0 = never projected (zero area), still one cell
+  std::vector<float> cell_area;              ///< [n] one-sided area of one cell of the triangle [m^2]
+  std::size_t focus_count = 0;               ///< triangles [0, focus_count) span the focus box; the others (flat ground) may lie outside
+  Box focus;                                 ///< relative to origin: lines are drawn through this box only
+  double depth_tolerance = 0.0;              ///< fragments closer than this along a line coincide [m]
+  std::optional<PeriodicCell> periodic;      ///< in world coordinates
+
+  std::size_t size() const { return split.size(); }
+  std::size_t cells() const { return first_cell.back(); }
+  std::size_t bytes() const;
+};
+
+/// Number of the cell that holds barycentric (u, v) in a triangle split k times: rows of constant v, each from low to high u.
+inline std::uint32_t cell_of(float u, float v, int k) {
+  const float a = u * static_cast<float>(k), b = v * static_cast<float>(k);
+  int j = static_cast<int>(b);
+  j = j < 0 ? 0 : (j > k - 1 ? k - 1 : j);
+  int i = static_cast<int>(a);
+  i = i < 0 ? 0 : (i > k - 1 - j ? k - 1 - j : i);
+  const bool upper = (a - static_cast<float>(i)) + (b - static_cast<float>(j)) > 1.0f && i + j < k - 1;
+  return static_cast<std::uint32_t>(j * (2 * k - j) + 2 * i + (upper ? 1 : 0));
+}
+
+/// Prepares facets of a scene in the order given. `split[i]` belongs to facet `order[i]`; facets of the ground must come last when
+/// `ground_is_flat`, and are then left out of the focus. Zero-area facets get split 0.
+Surface make_surface(const FacetScene& scene, const std::vector<std::uint32_t>& order, const std::vector<std::uint16_t>& split, bool ground_is_flat);
+
+}  // namespace sunfleck

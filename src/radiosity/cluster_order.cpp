@@ -1,0 +1,167 @@
+#include "cluster_order.hpp"
+
+#include <algorithm>
+
+namespace sunfleck {
+
+namespace {
+
+constexpr std::size_t most_children = 4;
+
+/// A structure (or organ) on its way into the tree.
+struct Unit {
+  Vec3 weighted_centroid{0.0};
+  double area = 0;
+  std::vector<std::uint32_t> children;  ///< units
+  std::uint32_t organ = no_parent;      ///< for units without children
+
+  Vec3 centroid() const { return area > 0 ? weighted_centroid / area : weighted_centroid; }
+};
+
+class TreeBuilder {
+ public:
+  explicit TreeBuilder(const std::vector<Unit>& units, ClusterOrder& out) : units_(units), out_(out) {}
+
+  void build(std::vector<std::uint32_t> roots) {
+    out_.nodes.push_back({});
+    // an explicit stack: hierarchies may be ten thousand levels deep
+    struct Task {
+      std::uint32_t node;
+      std::vector<std::uint32_t> members;
+    };
+    std::vector<Task> tasks;
+    tasks.push_back({0, std::move(roots)});
+    while (!tasks.empty()) {
+      Task task = std::move(tasks.back());
+      tasks.pop_back();
+      auto members = std::move(task.members);
+      // a chain of single children adds nothing
+      while (members.size() == 1 && !units_[members[0]].children.empty()) members = units_[members[0]].children;
+      if (members.size() == 1) {
+        out_.nodes[task.node].first_organ = units_[members[0]].organ;  // an organ for now; turned into a position below
+        continue;
+      }
+      const auto parts = split(members);
+      const auto first = static_cast<std::uint32_t>(out_.nodes.size());
+      out_.nodes[task.node].first_child = first;
+      out_.nodes[task.node].child_count = static_cast<std::uint32_t>(parts.size());
+      for (std::size_t i = 0; i < parts.size(); ++i) {
+        ClusterNode child;
+        child.parent = task.node;
+        out_.nodes.push_back(child);
+      }
+      for (std::size_t i = 0; i < parts.size(); ++i) tasks.push_back({first + static_cast<std::uint32_t>(i), parts[i]});
+    }
+    number_organs();
+  }
+
+ private:
+  std::vector<std::vector<std::uint32_t>> split(std::vector<std::uint32_t>& members) const {
+    std::vector<std::vector<std::uint32_t>> parts;
+    if (members.size() <= most_children) {
+      for (const auto m : members) parts.push_back({m});
+      return parts;
+    }
+    Box box;
+    for (const auto m : members) box.add(units_[m].centroid());
+    const Vec3 size = box.size();
+    const int axis = size.x >= size.y && size.x >= size.z ? 0 : (size.y >= size.z ? 1 : 2);
+    const auto middle = members.begin() + static_cast<std::ptrdiff_t>(members.size() / 2);
+    std::nth_element(members.begin(), middle, members.end(), [&](std::uint32_t a, std::uint32_t b) {
+      const double x = units_[a].centroid()[axis], y = units_[b].centroid()[axis];
+      return x < y || (x == y && a < b);
+    });
+    parts.emplace_back(members.begin(), middle);
+    parts.emplace_back(middle, members.end());
+    return parts;
+  }
+
+  /// Depth-first positions of organs.
+  void number_organs() {
+    std::vector<std::uint32_t> stack{0};
+    std::vector<std::uint32_t> order;
+    while (!stack.empty()) {
+      const auto i = stack.back();
+      stack.pop_back();
+      order.push_back(i);
+      const auto& node = out_.nodes[i];
+      for (std::uint32_t c = node.child_count; c-- > 0;) stack.push_back(node.first_child + c);
+    }
+    for (const auto i : order) {
+      auto& node = out_.nodes[i];
+      if (node.child_count > 0) continue;
+      const auto organ = node.first_organ;
+      node.first_organ = static_cast<std::uint32_t>(out_.organs.size());
+      node.organ_count = 1;
+      out_.organs.push_back(organ);
+    }
+    for (std::size_t k = order.size(); k-- > 0;) {
+      auto& node = out_.nodes[order[k]];
+      if (node.child_count == 0) continue;
+      node.first_organ = out_.nodes[node.first_child].first_organ;
+      for (std::uint32_t c = 0; c < node.child_count; ++c) node.organ_count += out_.nodes[node.first_child + c].organ_count;
+    }
+  }
+
+  const std::vector<Unit>& units_;
+  ClusterOrder& out_;
+};
+
+}  // namespace
+
+ClusterOrder cluster_order(const Scene& scene, const FacetScene& facets) {
+  std::vector<Unit> units;
+  const std::size_t organ_count = facets.organs.size();
+  units.resize(organ_count);
+  for (std::size_t i = 0; i < organ_count; ++i) units[i].organ = static_cast<std::uint32_t>(i);
+  for (std::size_t f = 0; f < facets.size(); ++f) {
+    auto& unit = units[facets.organ[f]];
+    const auto& c = facets.corners[f];
+    unit.weighted_centroid += static_cast<double>(facets.area[f]) * (c[0] + c[1] + c[2]) / 3.0;
+    unit.area += facets.area[f];
+  }
+  // organs of one copy are consecutive; their structures form its tree
+  std::vector<std::uint32_t> plants, ground;
+  std::size_t first = 0, copy_index = 0;
+  const std::size_t plant_organs = facets.plant_facets > 0 ? facets.organ[facets.plant_facets - 1] + 1 : 0;
+  std::vector<std::size_t> organ_end(facets.copies.size(), 0);
+  for (const auto& shape : facets.shapes) {
+    const auto& plant = *scene.plants[shape.plant].plant;
+    if (plant.shapes[shape.shape].triangle_count > 0) organ_end[shape.copy] = std::max<std::size_t>(organ_end[shape.copy], facets.organ[shape.first_facet] + 1);
+  }
+  for (; copy_index < facets.copies.size(); ++copy_index) {
+    const auto& plant = *scene.plants[facets.copy_plant[copy_index]].plant;
+    const std::size_t end = std::max(first, organ_end[copy_index]);
+    const auto base = static_cast<std::uint32_t>(units.size());
+    units.resize(units.size() + plant.structures.size());
+    for (std::size_t s = plant.structures.size(); s-- > 1;) units[base + plant.structures[s].parent].children.push_back(base + static_cast<std::uint32_t>(s));
+    for (std::size_t o = first; o < end; ++o) units[base + facets.organs.structure[o]].children.push_back(static_cast<std::uint32_t>(o));
+    for (std::size_t s = plant.structures.size(); s-- > 0;) {
+      auto& unit = units[base + s];
+      std::erase_if(unit.children, [&](std::uint32_t c) { return c >= base && units[c].children.empty(); });
+      std::sort(unit.children.begin(), unit.children.end());
+      for (const auto c : unit.children) {
+        unit.weighted_centroid += units[c].weighted_centroid;
+        unit.area += units[c].area;
+      }
+    }
+    if (!units[base].children.empty()) plants.push_back(base);
+    first = end;
+  }
+  for (std::size_t o = plant_organs; o < organ_count; ++o) ground.push_back(static_cast<std::uint32_t>(o));
+  std::vector<std::uint32_t> roots;
+  const auto add_root = [&](std::vector<std::uint32_t>& members) {
+    if (members.empty()) return;
+    Unit unit;
+    unit.children = std::move(members);
+    units.push_back(std::move(unit));
+    roots.push_back(static_cast<std::uint32_t>(units.size() - 1));
+  };
+  add_root(plants);
+  add_root(ground);
+  ClusterOrder order;
+  TreeBuilder(units, order).build(roots);
+  return order;
+}
+
+}  // namespace sunfleck

@@ -1,0 +1,230 @@
+#include "direct_light.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include <tbb/parallel_for.h>
+
+#include <sunfleck/core/memory.hpp>
+#include <sunfleck/core/sampling.hpp>
+#include <sunfleck/visibility/projection.hpp>
+
+namespace sunfleck {
+
+namespace {
+
+constexpr std::uint64_t sky_stream = 0x51ed270b27c4f2a9ULL, sun_stream = 0x2545f4914f6cdd1dULL;
+
+/// Mean distance between lines so that an organ of the mean size meets `lines` of them (a leaf shows half its area on average).
+double pitch_for(double organ_area, double lines) { return std::sqrt(0.5 * organ_area / lines); }
+
+/// Element means of a per-side quantity take the place of what no line has met.
+void fill_unsampled(const Elements& e, const std::vector<bool>& unsampled, std::vector<float>& value) {
+  for (std::size_t i = 0; i < e.size(); ++i) {
+    double sum[2] = {0, 0};
+    std::uint32_t known = 0;
+    for (std::uint32_t c = e.first_cell[i]; c < e.first_cell[i + 1]; ++c)
+      if (!unsampled[c]) {
+        ++known;
+        for (int side = 0; side < 2; ++side) sum[side] += value[2 * c + side];
+      }
+    if (known == 0 || known == e.first_cell[i + 1] - e.first_cell[i]) continue;
+    for (std::uint32_t c = e.first_cell[i]; c < e.first_cell[i + 1]; ++c)
+      if (unsampled[c])
+        for (int side = 0; side < 2; ++side) value[2 * c + side] = static_cast<float>(sum[side] / known);
+  }
+}
+
+bool same_radiance(const Sky& a, const Sky& b) {
+  return a.model == b.model && (a.model != SkyModel::clear || (a.sun && b.sun && *a.sun == *b.sun));
+}
+
+class DirectLightSolver {
+ public:
+  DirectLightSolver(const Scene& scene, const Elements& elements, const RadiositySettings& settings, Timings& timings, Progress& progress)
+      : scene_(scene), e_(elements), s_(elements.surface), settings_(settings), timings_(timings), progress_(progress) {}
+
+  DirectLight run() {
+    row_of_cell_.resize(s_.cells());
+    for (std::uint32_t t = 0; t < s_.size(); ++t)
+      for (std::uint32_t c = s_.first_cell[t]; c < s_.first_cell[t + 1]; ++c) row_of_cell_[c] = t;
+    list_sources();
+    Stopwatch sky_watch;
+    if (!skies_.empty()) sky();
+    if (!skies_.empty()) add_seconds(timings_, "sky", sky_watch.seconds());
+    Stopwatch sun_watch;
+    for (std::size_t i = 0; i < suns_.size(); ++i) {
+      progress_.check();
+      sun(*suns_[i]);
+    }
+    if (!suns_.empty()) add_seconds(timings_, "sun", sun_watch.seconds());
+    return std::move(out_);
+  }
+
+ private:
+  void list_sources() {
+    for (const auto& state : scene_.states) {
+      std::uint32_t sky_row = DirectLight::none, sun_row = DirectLight::none;
+      if (state.sky) {
+        for (sky_row = 0; sky_row < skies_.size() && !same_radiance(*skies_[sky_row], *state.sky); ++sky_row) {
+        }
+        if (sky_row == skies_.size()) skies_.push_back(&*state.sky);
+      }
+      if (state.sun) {
+        for (sun_row = 0; sun_row < suns_.size() && !(suns_[sun_row]->direction == state.sun->direction &&
+                                                      suns_[sun_row]->angular_diameter_deg == state.sun->angular_diameter_deg);
+             ++sun_row) {
+        }
+        if (sun_row == suns_.size()) suns_.push_back(&*state.sun);
+      }
+      out_.sky_of_state.push_back(sky_row);
+      out_.sun_of_state.push_back(sun_row);
+    }
+  }
+
+  /// E_side / E_horizontal = pi * sum over directions of r(d) * lines on which the side sees the sky / sum of all its lines.
+  void sky() {
+    const auto& density = settings_.density;
+    const std::size_t cells = s_.cells();
+    const double pitch = pitch_for(e_.organ_area, density.sky_lines_per_organ);
+    bool below = false;
+    for (const auto* sky : skies_) below = below || sky->reaches_below_horizon();
+    std::vector<float> all(cells, 0.0f);
+    out_.sky.assign(skies_.size(), std::vector<float>(2 * cells, 0.0f));
+    out_.sky_seen.assign(2 * cells, 0.0f);
+    constexpr std::uint32_t batch = 8;
+    std::vector<VisibleCounts> counts(batch), counts_below(below ? batch : 0);
+    std::vector<Vec3> direction(batch);
+    for (std::uint32_t first = 0; first < density.sky_directions; first += batch) {
+      progress_.check();
+      progress_.fraction("sky", static_cast<double>(first) / density.sky_directions);
+      const std::uint32_t n = std::min(batch, density.sky_directions - first);
+      tbb::parallel_for(std::uint32_t{0}, n, [&](std::uint32_t i) {
+        direction[i] = hemisphere_direction(first + i, density.sky_directions, mix(settings_.seed, sky_stream));
+        const auto p = project_set_member(s_, direction[i], first + i, pitch, mix(settings_.seed, sky_stream, 1));
+        clear(counts[i], cells);
+        count_visible(s_, p, false, counts[i]);
+        if (below) {
+          clear(counts_below[i], cells);
+          count_visible(s_, p, true, counts_below[i]);
+        }
+      });
+      std::vector<float> radiance(n * skies_.size()), radiance_below(n * skies_.size());
+      for (std::uint32_t i = 0; i < n; ++i)
+        for (std::size_t k = 0; k < skies_.size(); ++k) {
+          radiance[i * skies_.size() + k] = static_cast<float>(std::numbers::pi * skies_[k]->relative_radiance(direction[i]));
+          radiance_below[i * skies_.size() + k] = static_cast<float>(std::numbers::pi * skies_[k]->relative_radiance(-direction[i]));
+        }
+      tbb::parallel_for(tbb::blocked_range<std::size_t>(0, cells, 4096), [&](const auto& range) {
+        for (std::uint32_t i = 0; i < n; ++i) {
+          const auto dx = static_cast<float>(direction[i].x), dy = static_cast<float>(direction[i].y), dz = static_cast<float>(direction[i].z);
+          for (std::size_t c = range.begin(); c < range.end(); ++c) {
+            const float lines = counts[i].all[c];
+            if (lines == 0.0f) continue;
+            all[c] += lines;
+            const auto t = row_of_cell_[c];
+            const bool front_up = s_.normal[0][t] * dx + s_.normal[1][t] * dy + s_.normal[2][t] * dz > 0.0f;
+            const std::size_t up = 2 * c + (front_up ? 0 : 1);
+            out_.sky_seen[up] += counts[i].visible[c];
+            for (std::size_t k = 0; k < skies_.size(); ++k) out_.sky[k][up] += radiance[i * skies_.size() + k] * counts[i].visible[c];
+            if (below) {
+              out_.sky_seen[up ^ 1] += counts_below[i].visible[c];
+              for (std::size_t k = 0; k < skies_.size(); ++k) out_.sky[k][up ^ 1] += radiance_below[i * skies_.size() + k] * counts_below[i].visible[c];
+            }
+          }
+        }
+      });
+    }
+    std::vector<bool> unsampled(cells);
+    double total = 0;
+    for (std::size_t c = 0; c < cells; ++c) {
+      total += all[c];
+      unsampled[c] = all[c] == 0.0f;
+      const float inverse = all[c] > 0.0f ? 1.0f / all[c] : 0.0f;
+      for (int side = 0; side < 2; ++side) {
+        out_.sky_seen[2 * c + side] *= inverse;
+        for (auto& sky : out_.sky) sky[2 * c + side] *= inverse;
+      }
+    }
+    out_.fragments += static_cast<std::uint64_t>(total);
+    fill_unsampled(e_, unsampled, out_.sky_seen);
+    for (auto& sky : out_.sky) fill_unsampled(e_, unsampled, sky);
+  }
+
+  void sun(const Sun& sun) {
+    const auto& density = settings_.density;
+    const std::size_t cells = s_.cells();
+    const std::uint32_t samples = density.sun_samples;
+    const double pitch = pitch_for(e_.organ_area, density.sun_lines_per_organ / samples);
+    const double radius = 0.5 * sun.angular_diameter_deg * std::numbers::pi / 180.0;
+    Vec3 u, v;
+    orthonormal_frame(sun.direction, u, v);
+    const auto seed = mix(settings_.seed, sun_stream);
+    std::vector<VisibleCounts> counts(samples);
+    tbb::parallel_for(std::uint32_t{0}, samples, [&](std::uint32_t i) {
+      // points of the disc on a sunflower spiral: equal areas
+      const double r = radius * std::sqrt((i + 0.5) / samples), a = 2.399963229728653 * i + 2.0 * std::numbers::pi * unit_interval(seed);
+      Vec3 d = glm::normalize(sun.direction + std::tan(r) * (std::cos(a) * u + std::sin(a) * v));
+      if (d.z < 1e-3 && s_.periodic) d = glm::normalize(Vec3{d.x, d.y, 1e-3});
+      clear(counts[i], cells);
+      count_visible(s_, project_set_member(s_, d, i, pitch, mix(seed, 1)), false, counts[i]);
+    });
+    auto& lit = out_.sunlit.emplace_back(2 * cells, 0.0f);
+    auto& cosine = out_.sun_cosine.emplace_back(s_.size());
+    for (std::size_t t = 0; t < s_.size(); ++t)
+      cosine[t] = static_cast<float>(s_.normal[0][t] * sun.direction.x + s_.normal[1][t] * sun.direction.y + s_.normal[2][t] * sun.direction.z);
+    std::vector<bool> unsampled(cells);
+    double total = 0;
+    for (std::size_t c = 0; c < cells; ++c) {
+      float all = 0, visible = 0;
+      for (const auto& k : counts) {
+        all += k.all[c];
+        visible += k.visible[c];
+      }
+      total += all;
+      unsampled[c] = all == 0.0f;
+      if (all > 0.0f) lit[2 * c + (cosine[row_of_cell_[c]] > 0.0f ? 0 : 1)] = visible / all;
+    }
+    // an unsampled cell's lit side may be the other one than its element's mean says: keep the fraction, move it to the side that faces the sun
+    fill_unsampled(e_, unsampled, lit);
+    for (std::size_t c = 0; c < cells; ++c)
+      if (unsampled[c]) {
+        const float fraction = std::min(1.0f, lit[2 * c] + lit[2 * c + 1]);
+        const bool front = cosine[row_of_cell_[c]] > 0.0f;
+        lit[2 * c] = front ? fraction : 0.0f;
+        lit[2 * c + 1] = front ? 0.0f : fraction;
+      }
+    out_.fragments += static_cast<std::uint64_t>(total);
+  }
+
+  static void clear(VisibleCounts& counts, std::size_t cells) {
+    counts.all.assign(cells, 0.0f);
+    counts.visible.assign(cells, 0.0f);
+  }
+
+  const Scene& scene_;
+  const Elements& e_;
+  const Surface& s_;
+  const RadiositySettings& settings_;
+  Timings& timings_;
+  Progress& progress_;
+  std::vector<std::uint32_t> row_of_cell_;
+  std::vector<const Sky*> skies_;
+  std::vector<const Sun*> suns_;
+  DirectLight out_;
+};
+
+}  // namespace
+
+std::size_t DirectLight::bytes() const {
+  std::size_t total = bytes_of(sky_seen);
+  for (const auto* list : {&sky, &sunlit, &sun_cosine})
+    for (const auto& v : *list) total += bytes_of(v);
+  return total;
+}
+
+DirectLight direct_light(const Scene& scene, const Elements& elements, const RadiositySettings& settings, Timings& timings, Progress& progress) {
+  return DirectLightSolver(scene, elements, settings, timings, progress).run();
+}
+
+}  // namespace sunfleck

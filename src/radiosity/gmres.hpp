@@ -1,0 +1,25 @@
+// Restarted GMRES for many right-hand sides that share the operator.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include <sunfleck/core/progress.hpp>
+
+#include "transport.hpp"
+
+namespace sunfleck {
+
+struct GmresResult {
+  bool converged = true;
+  std::vector<double> residuals;  ///< after each application of the operator: worst column, relative to ||b||
+};
+
+/// Solves x - K x = b for all columns at once, each with a Krylov space of its own (Saad & Schultz 1986, doi:10.1137/0907058), in the
+/// inner product weighted by `weight` [sides]. x holds the first guess. Stops when the *true* residual, recomputed at every restart,
+/// is at most `tolerance` x ||b|| in every column; columns with b = 0 stay 0. Sums run in an order that does not depend on the number
+/// of threads. Throws Stopped.
+GmresResult gmres(const std::function<void(const Field& x, Field& kx)>& apply, const Field& b, const std::vector<float>& weight, std::size_t columns,
+                  double tolerance, int most_iterations, Field& x, Progress& progress);
+
+}  // namespace sunfleck

@@ -1,0 +1,250 @@
+#include <sunfleck/radiosity/solve.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <optional>
+
+#include <fmt/format.h>
+#include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
+
+#include <sunfleck/core/memory.hpp>
+
+#include "direct_light.hpp"
+#include "gmres.hpp"
+#include "transport.hpp"
+
+namespace sunfleck {
+
+namespace {
+
+constexpr int most_iterations = 400;
+
+class RadiositySolver {
+ public:
+  RadiositySolver(const Scene& scene, const FacetScene& facets, const RadiositySettings& settings, IrradianceSink& sink, Progress& progress)
+      : scene_(scene), facets_(facets), settings_(settings), sink_(sink), progress_(progress), states_(scene.states.size()), bands_(facets.bands),
+        columns_(states_ * bands_) {}
+
+  SolveReport run() {
+    report_.method = settings_.method == RadiosityMethod::direct ? "direct" : settings_.method == RadiosityMethod::flat ? "flat" : "clustering";
+    const bool scatter = settings_.method != RadiosityMethod::direct;
+    Stopwatch watch;
+    elements_ = make_elements(scene_, facets_, settings_.density, settings_.method == RadiosityMethod::flat);
+    timed("elements", watch);
+    report_.counts.emplace_back("elements", elements_.size());
+    report_.counts.emplace_back("cells", elements_.surface.cells());
+    report_.memory.emplace_back("elements", elements_.bytes());
+    direct_ = direct_light(scene_, elements_, settings_, report_.timings, progress_);
+    report_.counts.emplace_back("direct_fragments", direct_.fragments);
+    report_.memory.emplace_back("direct", direct_.bytes());
+    report_.balance.assign(states_, std::vector<Balance>(bands_));
+    gathered_.assign(2 * elements_.size() * columns_, 0.0f);
+    if (scatter) solve_scattering();
+    watch = {};
+    write_rows();
+    timed("rows", watch);
+    return std::move(report_);
+  }
+
+ private:
+  void timed(const char* phase, const Stopwatch& watch) { add_seconds(report_.timings, phase, watch.seconds()); }
+
+  /// Irradiance of sun and sky on a side of a cell of row t, for column (state, band) [W m^-2].
+  float direct_irradiance(std::size_t t, std::size_t cell_side, std::size_t state, std::size_t band) const {
+    float e = 0.0f;
+    if (const auto k = direct_.sky_of_state[state]; k != DirectLight::none)
+      e += static_cast<float>(scene_.states[state].sky->irradiance[band]) * direct_.sky[k][cell_side];
+    if (const auto k = direct_.sun_of_state[state]; k != DirectLight::none) {
+      const float cosine = cell_side & 1 ? -direct_.sun_cosine[k][t] : direct_.sun_cosine[k][t];
+      e += static_cast<float>(scene_.states[state].sun->irradiance[band]) * std::max(0.0f, cosine) * direct_.sunlit[k][cell_side];
+    }
+    return e;
+  }
+
+  /// Fraction of a side's hemisphere that is not open sky.
+  float rest(std::size_t cell_side) const { return direct_.sky_seen.empty() ? 1.0f : std::max(0.0f, 1.0f - direct_.sky_seen[cell_side]); }
+
+  /// Area means over each element's cells: direct irradiance, and the fraction of the hemisphere that is not open sky.
+  void element_sources() {
+    const std::size_t sides = 2 * elements_.size();
+    source_.assign(sides * columns_, 0.0f);
+    element_rest_.assign(sides, 1.0f);
+    row_of_cell_.resize(elements_.surface.cells());
+    const auto& s = elements_.surface;
+    for (std::uint32_t t = 0; t < s.size(); ++t)
+      for (std::uint32_t c = s.first_cell[t]; c < s.first_cell[t + 1]; ++c) row_of_cell_[c] = t;
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, elements_.size(), 256), [&](const auto& range) {
+      std::vector<double> sum(2 * columns_);
+      for (std::size_t i = range.begin(); i < range.end(); ++i) {
+        double area = 0, open[2] = {0, 0};
+        std::fill(sum.begin(), sum.end(), 0.0);
+        for (std::uint32_t c = elements_.first_cell[i]; c < elements_.first_cell[i + 1]; ++c) {
+          const auto t = row_of_cell_[c];
+          const double a = s.split[t] > 0 ? s.cell_area[t] : 0.0;
+          if (a == 0.0) continue;
+          area += a;
+          for (std::size_t side = 0; side < 2; ++side) {
+            open[side] += a * rest(2 * c + side);
+            for (std::size_t k = 0; k < columns_; ++k) sum[side * columns_ + k] += a * direct_irradiance(t, 2 * c + side, k / bands_, k % bands_);
+          }
+        }
+        if (area == 0.0) continue;
+        for (std::size_t side = 0; side < 2; ++side) {
+          element_rest_[2 * i + side] = static_cast<float>(open[side] / area);
+          for (std::size_t k = 0; k < columns_; ++k) source_[(2 * i + side) * columns_ + k] = static_cast<float>(sum[side * columns_ + k] / area);
+        }
+      }
+    });
+  }
+
+  void solve_scattering() {
+    Stopwatch watch;
+    element_sources();
+    progress_.check();
+    LineLinks links = line_links(elements_, settings_, progress_);
+    timed("lines", watch);
+    report_.counts.emplace_back("directions", settings_.density.directions);
+    report_.counts.emplace_back("fragments", links.fragments);
+    const std::size_t sides = links.sides();
+    const bool sky_known = !direct_.sky_seen.empty();
+    bool sky_below = false;
+    for (const auto& state : scene_.states) sky_below = sky_below || (state.sky && state.sky->reaches_below_horizon());
+    std::vector<float> sky_lines(sides, 0.0f);
+    // what leaves the scene: the part of each side's radiosity that goes to the sky and below the horizon
+    escape_.assign(sides, 0.0f);
+    for (std::size_t i = 0; i < sides; ++i) {
+      if (sky_known) sky_lines[i] = links.open_up[i] + (sky_below ? links.open_down[i] : 0.0f);
+      const float all = links.lines[i], open = links.open_up[i] + links.open_down[i], left = all - sky_lines[i];
+      if (sky_known)
+        escape_[i] = 1.0f - element_rest_[i] + (left > 0.0f ? element_rest_[i] * (open - sky_lines[i]) / left : 0.0f);
+      else
+        escape_[i] = all > 0.0f ? open / all : 0.0f;
+    }
+    std::unique_ptr<Gather> gather = std::make_unique<FlatGather>(std::move(links), sky_lines);
+    report_.counts.emplace_back("links", gather->links());
+    report_.memory.emplace_back("links", gather->bytes());
+    progress_.line(fmt::format("{} elements, {} links", elements_.size(), gather->links()));
+
+    watch = {};
+    const Reflection reflection(facets_, elements_, states_);
+    Field radiosity(sides * columns_), irradiance = source_;
+    const auto apply = [&](const Field& x, Field& kx) {
+      reflection.apply(x, radiosity);
+      gather->gather(radiosity, kx, columns_);
+      tbb::parallel_for(tbb::blocked_range<std::size_t>(0, sides, 4096), [&](const auto& range) {
+        for (std::size_t i = range.begin(); i < range.end(); ++i)
+          for (std::size_t c = 0; c < columns_; ++c) kx[i * columns_ + c] *= element_rest_[i];
+      });
+    };
+    std::vector<float> weight(sides);
+    for (std::size_t i = 0; i < sides; ++i) weight[i] = elements_.area[i / 2];
+    const double tolerance = settings_.tolerance > 0 ? settings_.tolerance : settings_.density.tolerance;
+    const auto result = gmres(apply, source_, weight, columns_, tolerance, most_iterations, irradiance, progress_);
+    for (std::size_t k = 0; k < result.residuals.size(); ++k)
+      report_.convergence.push_back({0, static_cast<std::uint32_t>(k), result.residuals[k], gather->links(), watch.seconds()});
+    if (!result.converged) report_.status = SolveStatus::not_converged;
+    reflection.apply(irradiance, radiosity);
+    gather->gather(radiosity, gathered_, columns_);
+    for (std::size_t i = 0; i < sides; ++i)
+      for (std::size_t c = 0; c < columns_; ++c)
+        report_.balance[c / bands_][c % bands_].escaped += static_cast<double>(elements_.area[i / 2]) * radiosity[i * columns_ + c] * escape_[i];
+    timed("iteration", watch);
+    progress_.line(fmt::format("{} applications of the operator, residual {:.1e}", result.residuals.size(), result.residuals.back()));
+  }
+
+  /// E = direct + (fraction that is not open sky) x gathered, averaged over the facet's cells.
+  void write_rows() {
+    const auto& s = elements_.surface;
+    const std::size_t n = facets_.size();
+    std::vector<std::uint32_t> row_of_facet(n);
+    for (std::size_t t = 0; t < n; ++t) row_of_facet[elements_.order[t]] = static_cast<std::uint32_t>(t);
+    const bool any_sun = !direct_.sunlit.empty();
+    constexpr std::size_t chunk = 16384;
+    std::vector<float> irradiance, sunlit;
+    const std::size_t blocks_in_chunk = 16, block = chunk / blocks_in_chunk;
+    std::vector<std::vector<Balance>> partial(blocks_in_chunk, std::vector<Balance>(columns_));
+    for (std::size_t first = 0; first < n; first += chunk) {
+      progress_.check();
+      const std::size_t count = std::min(chunk, n - first);
+      irradiance.assign(states_ * count * 2 * bands_, 0.0f);
+      if (any_sun) sunlit.assign(states_ * count * 2, 0.0f);
+      tbb::parallel_for(std::size_t{0}, blocks_in_chunk, [&](std::size_t b) {
+        std::fill(partial[b].begin(), partial[b].end(), Balance{});
+        for (std::size_t i = b * block, end = std::min(count, (b + 1) * block); i < end; ++i) {
+          const std::size_t t = row_of_facet[first + i];
+          if (s.split[t] == 0) continue;
+          facet_row(t, first + i, i, count, irradiance, sunlit, partial[b]);
+        }
+      });
+      for (const auto& p : partial)
+        for (std::size_t c = 0; c < columns_; ++c) {
+          auto& balance = report_.balance[c / bands_][c % bands_];
+          balance.incident += p[c].incident;
+          balance.leaves += p[c].leaves;
+          balance.ground += p[c].ground;
+        }
+      sink_.rows({first, count, irradiance.data(), any_sun ? sunlit.data() : nullptr, nullptr});
+    }
+    if (settings_.method == RadiosityMethod::direct)  // what is not absorbed is not followed: it counts as scattered out of the scene
+      for (auto& state : report_.balance)
+        for (auto& b : state) b.escaped = b.incident - b.leaves - b.ground;
+  }
+
+  void facet_row(std::size_t t, std::size_t facet, std::size_t i, std::size_t count, std::vector<float>& irradiance, std::vector<float>& sunlit,
+                 std::vector<Balance>& balance) {
+    const auto& s = elements_.surface;
+    const auto& optics = facets_.materials[facets_.optics[facet]];
+    const std::uint32_t begin = s.first_cell[t], end = s.first_cell[t + 1];
+    const float share = 1.0f / static_cast<float>(end - begin);
+    const double area = facets_.area[facet];
+    for (std::size_t state = 0; state < states_; ++state) {
+      for (std::size_t band = 0; band < bands_; ++band) {
+        const std::size_t column = state * bands_ + band;
+        double absorbed = 0;
+        for (std::size_t side = 0; side < 2; ++side) {
+          float direct = 0.0f, scattered = 0.0f;
+          for (std::uint32_t c = begin; c < end; ++c) {
+            direct += share * direct_irradiance(t, 2 * c + side, state, band);
+            scattered += share * rest(2 * c + side) * gathered_[(2 * elements_.element_of_cell[c] + side) * columns_ + column];
+          }
+          const float e = direct + scattered;
+          irradiance[((state * count + i) * 2 + side) * bands_ + band] = e;
+          balance[column].incident += area * direct;
+          absorbed += (1.0 - (side == 0 ? optics.reflectance_front[band] : optics.reflectance_back[band]) - optics.transmittance[band]) * e;
+        }
+        (facet < facets_.plant_facets ? balance[column].leaves : balance[column].ground) += area * absorbed;
+      }
+      if (const auto k = direct_.sun_of_state[state]; k != DirectLight::none)
+        for (std::size_t side = 0; side < 2; ++side) {
+          float lit = 0.0f;
+          for (std::uint32_t c = begin; c < end; ++c) lit += share * direct_.sunlit[k][2 * c + side];
+          sunlit[(state * count + i) * 2 + side] = lit;
+        }
+    }
+  }
+
+  const Scene& scene_;
+  const FacetScene& facets_;
+  const RadiositySettings& settings_;
+  IrradianceSink& sink_;
+  Progress& progress_;
+  const std::size_t states_, bands_, columns_;
+  Elements elements_;
+  DirectLight direct_;
+  std::vector<std::uint32_t> row_of_cell_;
+  Field source_, gathered_;
+  std::vector<float> element_rest_, escape_;
+  SolveReport report_;
+};
+
+}  // namespace
+
+SolveReport solve_radiosity(const Scene& scene, const FacetScene& facets, const RadiositySettings& settings, IrradianceSink& sink, Progress& progress) {
+  std::optional<tbb::global_control> control;
+  if (settings.threads > 0) control.emplace(tbb::global_control::max_allowed_parallelism, settings.threads);
+  return RadiositySolver(scene, facets, settings, sink, progress).run();
+}
+
+}  // namespace sunfleck

@@ -1,0 +1,129 @@
+// Scan conversion of projected triangles, the inner loop of every projection.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include <sunfleck/visibility/projection.hpp>
+
+namespace sunfleck {
+
+/// A quantity that is linear over a projected triangle: value at corner 0, change per pixel along X and Y.
+struct ScreenPlane {
+  float at_corner, per_x, per_y;
+  float at(float dx, float dy) const { return at_corner + per_x * dx + per_y * dy; }
+};
+
+/// One projected triangle, with what its spans need. Offsets are in pixels from its corner 0.
+struct ProjectedTriangle {
+  std::uint32_t index;    ///< row of the surface
+  bool front_up;          ///< the front faces the direction
+  int split;
+  ScreenPlane depth;
+  float depth_low, depth_high;
+  ScreenPlane u, v;       ///< barycentric coordinates of corners 1 and 2
+
+  float depth_at(float dx, float dy) const { return std::min(std::max(depth.at(dx, dy), depth_low), depth_high); }
+};
+
+/// Projects triangles [begin, end) of the list (of the surface where list is null) in blocks and calls
+/// span(triangle, row, column, count, dx, dy) for every run of `count` pixel centres inside, the first at offset (dx, dy) from corner
+/// 0. In periodic scenes rows and columns are taken modulo the grid and runs are cut at its edge. Rows outside [row_begin, row_end)
+/// are skipped.
+template <class Span>
+void rasterise(const Surface& s, const Projection& p, const std::uint32_t* list, std::size_t begin, std::size_t end, int row_begin, int row_end, Span&& span) {
+  constexpr int block = 16;
+  const auto f = [](double x) { return static_cast<float>(x); };
+  const float xx = f(p.x_row.x), xy = f(p.x_row.y), xz = f(p.x_row.z), x0 = f(p.x0);
+  const float yx = f(p.y_row.x), yy = f(p.y_row.y), yz = f(p.y_row.z), y0 = f(p.y0);
+  const float zx = f(p.z_row.x), zy = f(p.z_row.y), zz = f(p.z_row.z);
+  const float dx = f(p.direction.x), dy = f(p.direction.y), dz = f(p.direction.z);
+  for (std::size_t first = begin; first < end; first += block) {
+    const int n = static_cast<int>(std::min<std::size_t>(block, end - first));
+    alignas(64) float X[3][block], Y[3][block], Z[3][block];
+    alignas(64) int ya[block], yb[block];
+    for (int k = 0; k < 3; ++k) {
+      const float* cx = s.corner[3 * k].data();
+      const float* cy = s.corner[3 * k + 1].data();
+      const float* cz = s.corner[3 * k + 2].data();
+      if (list) {
+        for (int i = 0; i < n; ++i) {
+          const std::uint32_t t = list[first + i];
+          X[k][i] = xx * cx[t] + xy * cy[t] + xz * cz[t] + x0;
+          Y[k][i] = yx * cx[t] + yy * cy[t] + yz * cz[t] + y0;
+          Z[k][i] = zx * cx[t] + zy * cy[t] + zz * cz[t];
+        }
+      } else {
+        const float *bx = cx + first, *by = cy + first, *bz = cz + first;
+        for (int i = 0; i < n; ++i) {
+          X[k][i] = xx * bx[i] + xy * by[i] + xz * bz[i] + x0;
+          Y[k][i] = yx * bx[i] + yy * by[i] + yz * bz[i] + y0;
+          Z[k][i] = zx * bx[i] + zy * by[i] + zz * bz[i];
+        }
+      }
+    }
+    for (int i = 0; i < n; ++i) {
+      const float low = std::min(std::min(Y[0][i], Y[1][i]), Y[2][i]), high = std::max(std::max(Y[0][i], Y[1][i]), Y[2][i]);
+      ya[i] = static_cast<int>(std::ceil(low - 0.5f));
+      yb[i] = static_cast<int>(std::ceil(high - 0.5f)) - 1;
+    }
+    for (int i = 0; i < n; ++i) {
+      if (ya[i] > yb[i]) continue;
+      if (!p.wraps && (yb[i] < row_begin || ya[i] >= row_end)) continue;
+      const std::uint32_t t = list ? list[first + i] : static_cast<std::uint32_t>(first + i);
+      if (s.split[t] == 0) continue;
+      const float ax = X[1][i] - X[0][i], ay = Y[1][i] - Y[0][i], bx = X[2][i] - X[0][i], by = Y[2][i] - Y[0][i];
+      const float area = ax * by - bx * ay;
+      if (std::fabs(area) < 1e-12f) continue;
+      const float left = std::min(std::min(X[0][i], X[1][i]), X[2][i]), right = std::max(std::max(X[0][i], X[1][i]), X[2][i]);
+      if (std::ceil(left - 0.5f) > std::ceil(right - 0.5f) - 1.0f) continue;
+      const float inverse = 1.0f / area;
+      ProjectedTriangle triangle;
+      triangle.index = t;
+      triangle.split = s.split[t];
+      triangle.front_up = s.normal[0][t] * dx + s.normal[1][t] * dy + s.normal[2][t] * dz > 0.0f;
+      triangle.u = {0.0f, by * inverse, -bx * inverse};
+      triangle.v = {0.0f, -ay * inverse, ax * inverse};
+      const float d1 = Z[1][i] - Z[0][i], d2 = Z[2][i] - Z[0][i];
+      triangle.depth = {Z[0][i], d1 * triangle.u.per_x + d2 * triangle.v.per_x, d1 * triangle.u.per_y + d2 * triangle.v.per_y};
+      triangle.depth_low = std::min(std::min(Z[0][i], Z[1][i]), Z[2][i]);
+      triangle.depth_high = std::max(std::max(Z[0][i], Z[1][i]), Z[2][i]);
+      const int y_first = p.wraps ? ya[i] : std::max(ya[i], row_begin), y_last = p.wraps ? yb[i] : std::min(yb[i], row_end - 1);
+      for (int y = y_first; y <= y_last; ++y) {
+        const float yc = static_cast<float>(y) + 0.5f;
+        float xl = 1e30f, xr = -1e30f;
+        for (int k = 0; k < 3; ++k) {
+          const int m = k == 2 ? 0 : k + 1;
+          if ((Y[k][i] < yc) != (Y[m][i] < yc)) {
+            const float x = X[k][i] + (yc - Y[k][i]) * (X[m][i] - X[k][i]) / (Y[m][i] - Y[k][i]);
+            xl = std::min(xl, x);
+            xr = std::max(xr, x);
+          }
+        }
+        if (!(xl <= xr)) continue;
+        int xa = static_cast<int>(std::ceil(xl - 0.5f)), xb = static_cast<int>(std::ceil(xr - 0.5f)) - 1;
+        if (!p.wraps) {
+          xa = std::max(xa, 0);
+          xb = std::min(xb, p.columns - 1);
+          if (xa <= xb) span(triangle, y, xa, xb - xa + 1, static_cast<float>(xa) + 0.5f - X[0][i], yc - Y[0][i]);
+          continue;
+        }
+        if (xa > xb) continue;
+        int row = y % p.rows;
+        if (row < 0) row += p.rows;
+        if (row < row_begin || row >= row_end) continue;
+        int column = xa % p.columns;
+        if (column < 0) column += p.columns;
+        for (int x = xa; x <= xb;) {
+          const int run = std::min(xb - x + 1, p.columns - column);
+          span(triangle, row, column, run, static_cast<float>(x) + 0.5f - X[0][i], yc - Y[0][i]);
+          x += run;
+          column = 0;
+        }
+      }
+    }
+  }
+}
+
+}  // namespace sunfleck
