@@ -63,7 +63,10 @@ class Check {
           fail(key + ".sun.angular_diameter_deg", fmt::format("{}", sun.angular_diameter_deg), "0 to 90 degrees");
         irradiance(sun.irradiance, key + ".sun.irradiance");
       }
-      if (state.sky) irradiance(state.sky->irradiance, key + ".sky.irradiance");
+      if (!state.sky) continue;
+      irradiance(state.sky->irradiance, key + ".sky.irradiance");
+      if (state.sky->model == SkyModel::clear && !state.sky->sun)
+        fail(key + ".sky", "a clear sky without a sun", "the direction of the sun, about which it is built");
     }
   }
 

@@ -1,5 +1,8 @@
 #include <sunfleck/scene/facets.hpp>
 
+#include <algorithm>
+#include <limits>
+#include <optional>
 #include <unordered_map>
 
 #include <sunfleck/core/error.hpp>
@@ -26,9 +29,15 @@ class Interned {
 class Expansion {
  public:
   Expansion(const Scene& scene, FacetScene& out)
-      : scene_(scene), out_(out), names_(out.organs.names), types_(out.organs.types), plants_(out.organs.plants), placements_(out.organs.placements) {}
+      : scene_(scene),
+        out_(out),
+        names_(out.organs.names),
+        types_(out.organs.types),
+        plants_(out.organs.plants),
+        placements_(out.organs.placements) {}
 
   void run() {
+    reserve(count());
     for (std::uint32_t p = 0; p < scene_.plants.size(); ++p) {
       const auto& entry = scene_.plants[p];
       for (std::size_t i = 0; i < entry.placements.size(); ++i) add_plant(p, entry.placements[i].map, label(entry.name, i));
@@ -40,6 +49,58 @@ class Expansion {
   }
 
  private:
+  struct Count {
+    std::uint64_t facets = 0, shapes = 0, copies = 0;
+    void add(const Count& more, std::uint64_t times) {
+      facets = limited(facets, more.facets, times);
+      shapes = limited(shapes, more.shapes, times);
+      copies = limited(copies, more.copies, times);
+    }
+    /// a + b * times, or the limit: groups in groups multiply beyond any integer.
+    static std::uint64_t limited(std::uint64_t a, std::uint64_t b, std::uint64_t times) {
+      return b != 0 && times > (limit + 1 - a) / b ? limit + 1 : std::min(limit + 1, a + b * times);
+    }
+  };
+
+  Count count_of_plant(const PlantEntry& entry) const { return {entry.plant->facet_count(), entry.plant->shapes.size(), 1}; }
+
+  Count count_of_group(std::uint32_t g, std::vector<std::optional<Count>>& known) const {
+    if (known[g]) return *known[g];
+    Count sum;
+    for (const auto& member : scene_.groups[g].members)
+      sum.add(member.is_group ? count_of_group(member.index, known) : count_of_plant(scene_.plants[member.index]), 1);
+    known[g] = sum;
+    return sum;
+  }
+
+  /// What will be written, before a byte of it is.
+  Count count() const {
+    Count sum;
+    std::vector<std::optional<Count>> known(scene_.groups.size());
+    for (const auto& entry : scene_.plants)
+      if (!entry.placements.empty()) sum.add(count_of_plant(entry), entry.placements.size());
+    for (std::uint32_t g = 0; g < scene_.groups.size(); ++g)
+      if (!scene_.groups[g].placements.empty()) sum.add(count_of_group(g, known), scene_.groups[g].placements.size());
+    if (scene_.ground)
+      sum.add({scene_.ground->mesh ? scene_.ground->mesh->triangles.size()
+                                   : std::uint64_t{2} * scene_.ground->cells[0] * scene_.ground->cells[1],
+               0, 0},
+              1);
+    if (sum.facets > limit || sum.shapes > limit || sum.copies > limit)
+      throw InputError(location(scene_.file), "more than 2^31 facets", "fewer copies, or smaller plants");
+    return sum;
+  }
+
+  void reserve(const Count& count) {
+    out_.corners.reserve(count.facets);
+    out_.area.reserve(count.facets);
+    out_.optics.reserve(count.facets);
+    out_.organ.reserve(count.facets);
+    out_.shapes.reserve(count.shapes);
+    out_.copies.reserve(count.copies);
+    out_.copy_plant.reserve(count.copies);
+  }
+
   static std::string label(const std::string& name, std::size_t i) { return name + "[" + std::to_string(i) + "]"; }
 
   void add_group(const GroupEntry& group, const Affine& map, const std::string& path) {
@@ -55,8 +116,10 @@ class Expansion {
   }
 
   void add_facet(const Triangle& corners, std::uint32_t material, std::uint32_t organ) {
-    if (out_.size() >= (std::size_t{1} << 31)) throw InputError(location(scene_.file), "more than 2^31 facets", "fewer, or copies kept as instances");
     const double area = glm::length(area_vector(corners));
+    if (!(area <= std::numeric_limits<float>::max()))
+      throw InputError(location(scene_.file), "facet " + std::to_string(out_.size()) + " of infinite area",
+                       "coordinates of metres, not beyond all bounds");
     out_.corners.push_back(corners);
     out_.area.push_back(static_cast<float>(area));
     out_.optics.push_back(material);
@@ -67,7 +130,8 @@ class Expansion {
       ++out_.zero_area_facets;
   }
 
-  std::uint32_t add_organ(const std::string& name, const std::string& type, std::uint32_t plant, std::uint32_t placement, std::uint32_t structure) {
+  std::uint32_t add_organ(const std::string& name, const std::string& type, std::uint32_t plant, std::uint32_t placement,
+                          std::uint32_t structure) {
     auto& organs = out_.organs;
     organs.name.push_back(names_.row(name));
     organs.type.push_back(types_.row(type));
@@ -84,7 +148,6 @@ class Expansion {
     const auto copy = static_cast<std::uint32_t>(out_.copies.size());
     out_.copies.push_back(map);
     out_.copy_plant.push_back(index);
-    const bool mirrors = map.mirrors();
     std::vector<std::uint32_t> organ_of(plant.structures.size(), no_parent);
     for (std::uint32_t s = 0; s < plant.shapes.size(); ++s) {
       const auto& shape = plant.shapes[s];
@@ -96,9 +159,12 @@ class Expansion {
         organ = add_organ(name, type, plant_row, placement_row, shape.structure);
       }
       out_.shapes.push_back({index, s, static_cast<std::uint32_t>(out_.size()), copy});
+      const Mesh& mesh = plant.meshes[shape.mesh];
+      const Affine to_world = map * shape.placement;
+      const bool mirrors = to_world.mirrors();  // a mirror on a mirror leaves the order as it was
       for (std::uint32_t t = 0; t < shape.triangle_count; ++t) {
-        Triangle c = shape_triangle(plant, shape, t);
-        for (auto& p : c) p = map.point(p);
+        Triangle c = mesh.corners(shape.first_triangle + t);
+        for (auto& p : c) p = to_world.point(p);
         if (mirrors) std::swap(c[1], c[2]);
         add_facet(c, entry.shape_optics[s], organ);
       }
@@ -126,6 +192,7 @@ class Expansion {
       }
   }
 
+  static constexpr std::uint64_t limit = std::uint64_t{1} << 31;
   const Scene& scene_;
   FacetScene& out_;
   Interned names_, types_, plants_, placements_;
