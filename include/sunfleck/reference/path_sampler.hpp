@@ -1,0 +1,77 @@
+// Unbiased samples of the light on facets, by paths from them to sun and sky. Shared by the reference method and the certificate.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include <sunfleck/scene/scene.hpp>
+#include <sunfleck/visibility/rays.hpp>
+
+namespace sunfleck {
+
+/// Where samples start: points uniform over the area of some facets (one facet, or those of an organ). Facets without area must be
+/// left out, unless all are: then nothing is sampled.
+class SampleTarget {
+ public:
+  SampleTarget() = default;
+  /// `key` chooses the random numbers: two targets with different keys are independent.
+  SampleTarget(const FacetScene& scene, std::vector<std::uint32_t> facets, std::uint64_t key);
+
+  double area() const { return cumulative_.empty() ? 0.0 : cumulative_.back(); }  ///< [m^2]
+  std::uint64_t key() const { return key_; }
+  /// The facet at the fraction x of the area, and where in [0, 1) x lies within it.
+  std::uint32_t facet_at(double x, double& within) const;
+
+ private:
+  std::vector<std::uint32_t> facets_;
+  std::vector<double> cumulative_;
+  std::uint64_t key_ = 0;
+};
+
+/// Means over the samples of one randomisation. s states, b bands.
+struct SampleMeans {
+  std::vector<double> irradiance;  ///< [s][2][b] front, back, all light [W m^-2]
+  std::vector<double> direct;      ///< [s][2][b] straight from sun and sky [W m^-2]
+  std::vector<double> absorbed;    ///< [s][b] per one-sided area [W m^-2]
+  std::vector<double> sunlit;      ///< [s][2] [-]
+  std::uint64_t rays = 0;
+};
+
+/// E on a side at a point is the mean over cosine-weighted directions of pi L; L is the sky's radiance where a ray leaves the scene,
+/// and B / pi of the side it meets otherwise, with B = rho E_h + tau E_o of the hit side h and its other side o. Direct sun is
+/// added at every point by a shadow ray to a point of the disc (its centre, if the diameter is 0); at a hit the path goes on
+/// with the reflected or the transmitted part, chosen in proportion to what all bands together carry, and carries one weight a band.
+/// From half of the first weight on, a path is ended at random and the survivors weighted up (Russian roulette).
+/// One path serves all bands and all states' skies; shadow rays go to each state's sun.
+///
+/// The first dimensions (point, direction from either side, place on the sun's disc) are an Owen-scrambled Sobol' sequence per
+/// target and randomisation, the rest independent; numbers depend on (seed, key of the target, randomisation, sample) alone.
+class PathSampler {
+ public:
+  /// `rays` over the same facets; all must outlive the sampler.
+  PathSampler(const Scene& scene, const FacetScene& facets, const RayScene& rays, std::uint64_t seed);
+  ~PathSampler();
+
+  std::size_t states() const;
+  std::size_t bands() const;
+  bool has_sun() const;  ///< in any state
+
+  /// `count` samples, each one point with one path from its front and one from its back. Any number of threads may call it.
+  void sample(const SampleTarget& target, std::uint32_t randomisation, std::uint32_t count, SampleMeans& means) const;
+
+  /// Share of the light that first meets facets or ground which leaves the scene again, per state and band [s][b] [-], from 16
+  /// times `count` particles for each state's sun and sky, sent into the scene: an estimate independent of sample(), for the balance. 0
+  /// where no light comes in.
+  struct Escape {
+    std::vector<double> share, standard_error;
+    std::uint64_t rays = 0;
+  };
+  Escape escape_share(std::uint32_t count) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<const Impl> impl_;
+};
+
+}  // namespace sunfleck

@@ -1,0 +1,134 @@
+#include <sunfleck/reference/path_tracer.hpp>
+
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include <sunfleck/core/memory.hpp>
+#include <sunfleck/core/timer.hpp>
+#include <sunfleck/reference/path_sampler.hpp>
+
+namespace sunfleck {
+
+namespace {
+
+/// Rows of one block of facets, and their sums.
+class Block {
+ public:
+  Block(const FacetScene& facets, const PathSampler& sampler, std::size_t count)
+      : facets_(facets),
+        sampler_(sampler),
+        states_(sampler.states()),
+        bands_(sampler.bands()),
+        means_(count * reference_randomisations),
+        irradiance_(count * states_ * 2 * bands_),
+        sunlit_(count * states_ * 2),
+        variance_(count * states_ * bands_) {}
+
+  void trace(std::size_t first, std::size_t count, std::uint32_t samples) {
+    tbb::parallel_for(std::size_t{0}, count * reference_randomisations, [&](std::size_t item) {
+      const auto facet = static_cast<std::uint32_t>(first + item / reference_randomisations);
+      const SampleTarget target(facets_, {facet}, facet);
+      sampler_.sample(target, static_cast<std::uint32_t>(item % reference_randomisations), samples, means_[item]);
+    });
+  }
+
+  /// Means of the randomisations into rows [s][count]..., balance and variances, facet by facet in order.
+  void collect(std::size_t first, std::size_t count, SolveReport& report, std::vector<double>& organ_variance, std::uint64_t& rays) {
+    constexpr double n = reference_randomisations;
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::size_t facet = first + i;
+      const double area = facets_.area[facet];
+      const auto* parts = &means_[i * reference_randomisations];
+      const auto mean = [&](std::vector<double> SampleMeans::*field, std::size_t k) {
+        double sum = 0.0;
+        for (std::uint32_t r = 0; r < reference_randomisations; ++r) sum += (parts[r].*field)[k];
+        return sum / n;
+      };
+      for (std::uint32_t r = 0; r < reference_randomisations; ++r) rays += parts[r].rays;
+      for (std::size_t s = 0; s < states_; ++s) {
+        for (std::size_t k = 0; k < 2 * bands_; ++k)
+          irradiance_[(s * count + i) * 2 * bands_ + k] = static_cast<float>(mean(&SampleMeans::irradiance, s * 2 * bands_ + k));
+        for (std::size_t k = 0; k < 2; ++k) sunlit_[(s * count + i) * 2 + k] = static_cast<float>(mean(&SampleMeans::sunlit, s * 2 + k));
+        for (std::size_t b = 0; b < bands_; ++b) {
+          const double absorbed = mean(&SampleMeans::absorbed, s * bands_ + b);
+          double square = 0.0;
+          for (std::uint32_t r = 0; r < reference_randomisations; ++r) {
+            const double difference = parts[r].absorbed[s * bands_ + b] - absorbed;
+            square += difference * difference;
+          }
+          const double variance = square / (n * (n - 1.0));
+          variance_[(s * count + i) * bands_ + b] = static_cast<float>(variance);
+          organ_variance[(s * facets_.organs.size() + facets_.organ[facet]) * bands_ + b] += area * area * variance;
+          auto& balance = report.balance[s][b];
+          balance.incident += area * (mean(&SampleMeans::direct, 2 * s * bands_ + b) + mean(&SampleMeans::direct, (2 * s + 1) * bands_ + b));
+          (facet < facets_.plant_facets ? balance.leaves : balance.ground) += area * absorbed;
+        }
+      }
+    }
+  }
+
+  IrradianceRows rows(std::size_t first, std::size_t count) const {
+    return {first, count, irradiance_.data(), sampler_.has_sun() ? sunlit_.data() : nullptr, variance_.data()};
+  }
+
+ private:
+  const FacetScene& facets_;
+  const PathSampler& sampler_;
+  std::size_t states_, bands_;
+  std::vector<SampleMeans> means_;  ///< [count][randomisation]
+  std::vector<float> irradiance_, sunlit_, variance_;
+};
+
+}  // namespace
+
+SolveReport trace_reference(const Scene& scene, const FacetScene& facets, const ReferenceSettings& settings, IrradianceSink& sink, Progress& progress) {
+  SolveReport report;
+  report.method = "reference";
+  const std::size_t states = scene.states.size(), bands = scene.band_count(), n = facets.size();
+  report.balance.assign(states, std::vector<Balance>(bands));
+  tbb::task_arena arena(settings.threads > 0 ? settings.threads : tbb::task_arena::automatic);
+
+  Stopwatch building;
+  const RayScene rays(facets);
+  const PathSampler sampler(scene, facets, rays, settings.seed);
+  add_seconds(report.timings, "build the tree of rays", building.seconds());
+
+  Stopwatch tracing;
+  const std::uint32_t samples = std::max<std::uint32_t>(1, (settings.samples + reference_randomisations - 1) / reference_randomisations);
+  // Blocks of about 10^5 paths, so that the user is heard several times a second, and no more than some 10 MB of sums.
+  const std::size_t block_size = std::clamp<std::size_t>(
+      std::min<std::size_t>(65536 / (samples * reference_randomisations), (std::size_t{1} << 20) / (reference_randomisations * states * (5 * bands + 2))),
+      1, 4096);
+  Block block(facets, sampler, std::min(block_size, n));
+  std::vector<double> organ_variance(states * facets.organs.size() * bands, 0.0);
+  std::uint64_t ray_count = 0;
+  for (std::size_t first = 0; first < n; first += block_size) {
+    progress.check();
+    progress.fraction("reference", static_cast<double>(first) / static_cast<double>(n));
+    const std::size_t count = std::min(block_size, n - first);
+    arena.execute([&] { block.trace(first, count, samples); });
+    block.collect(first, count, report, organ_variance, ray_count);
+    sink.rows(block.rows(first, count));
+  }
+  progress.fraction("reference", 1.0);
+  add_seconds(report.timings, "paths", tracing.seconds());
+
+  Stopwatch balancing;
+  const std::size_t work = std::size_t{n} * samples;  // as many particles as a sixteenth of the paths, within bounds
+  PathSampler::Escape escape;
+  arena.execute([&] { escape = sampler.escape_share(static_cast<std::uint32_t>(std::clamp<std::size_t>(work / (16 * states), 64, 4096))); });
+  for (std::size_t s = 0; s < states; ++s)
+    for (std::size_t b = 0; b < bands; ++b) report.balance[s][b].escaped = report.balance[s][b].incident * escape.share[s * bands + b];
+  add_seconds(report.timings, "balance", balancing.seconds());
+
+  report.organ_variance.absorbed.assign(organ_variance.begin(), organ_variance.end());
+  report.counts = {{"samples per facet", std::uint64_t{samples} * reference_randomisations}, {"rays", ray_count + escape.rays}, {"stacked pairs", rays.stacked_pairs()}};
+  report.memory = {{"tree of rays", rays.bytes()}, {"sums of organs", bytes_of(organ_variance)}};
+  return report;
+}
+
+}  // namespace sunfleck
