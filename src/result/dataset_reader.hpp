@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "result/h5.hpp"
+#include <sunfleck/core/h5.hpp>
 
 namespace sunfleck::h5 {
 

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "result/h5.hpp"
+#include <sunfleck/core/h5.hpp>
 
 namespace sunfleck::h5 {
 
