@@ -89,6 +89,30 @@ void add_plan(CLI::App& verb, PlanOptions& o) {
       "  sunfleck plan field.toml --quality fine --json");
 }
 
+void add_compare(CLI::App& verb, CompareOptions& o) {
+  verb.add_option("RESULT", o.result, "result to judge, HDF5")->required()->type_name("");
+  verb.add_option("REFERENCE", o.reference, "result to judge it by, HDF5; where it holds variances its own noise is taken out")
+      ->required()
+      ->type_name("");
+  verb.add_flag("--json", o.json, "print JSON instead of a table");
+  verb.footer(
+      "Both must be results of the same scene. Errors are of absorbed power per area, weighted by area, as fractions of the mean.\n\n"
+      "Example:\n"
+      "  sunfleck compare stand.h5 truth.h5");
+}
+
+void add_generate(CLI::App& verb, GenerateOptions& o) {
+  verb.add_option("SPECIES", o.species, "species file, TOML, such as those in plants/")->required()->type_name("");
+  verb.add_option("-o,--output", o.output, "plant to write as a hierarchy of structures, HDF5")->required()->type_name("PLANT.h5");
+  verb.add_option("--age", o.age, "age of the plant, in the unit that the species file states (default the file's own)")
+      ->type_name("AGE")
+      ->check(number_between(0, unlimited));
+  verb.add_option("--seed", o.seed, "seed of its chance events (default the file's own)")->type_name("N")->check(count_from(0));
+  verb.footer(
+      "Example:\n"
+      "  sunfleck generate plants/poplar.toml -o poplar.h5 --age 8 --seed 3");
+}
+
 std::string hint(const std::string& found, const std::vector<std::string>& known) {
   const std::string near = nearest_name(found, known);
   return near.empty() ? "" : "; did you mean '" + near + "'?";
@@ -114,6 +138,8 @@ class Program {
         "Each verb has its own help: sunfleck VERB --help. Data go to standard output, progress and messages to standard error.\n"
         "Exit codes: 0 done, 1 output failed, 2 bad usage or input, 3 did not converge (the result is written), 4 stopped.");
     add("plan", "what a solve would do and leave out, its memory and work, without solving", add_plan, verbs_.plan, verb_plan);
+    add("compare", "the error of one result against another", add_compare, verbs_.compare, verb_compare);
+    add("generate", "a procedural plant from a species file", add_generate, verbs_.generate, verb_generate);
   }
 
   int run(int argc, char** argv) {

@@ -16,7 +16,9 @@ struct Misuse {
   std::string message;  ///< the whole of standard error
 };
 
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
 
 }  // namespace
 
@@ -24,7 +26,7 @@ TEST_CASE("every verb explains itself", "[cli]") {
   const ProgramRun program = run_sunfleck({"--help"});
   CHECK(program.exit_code == 0);
   CHECK(program.err.empty());
-  for (const std::string verb : {"plan"}) {
+  for (const std::string verb : {"plan", "compare", "generate"}) {
     INFO(verb);
     CHECK(contains(program.out, "\n  " + verb + " "));
     const ProgramRun run = run_sunfleck({verb, "--help"});
