@@ -1,4 +1,4 @@
-// The layout of our own plant files, shared by writer and reader. docs/formats.md shows it as a table.
+// The layout of our own plant files, shared by writer and reader. docs/formats-plants.md shows it to users.
 //   attrs            format "sunfleck-plant", format_version, name
 //   /names/type /attribute /material /structure /text     string tables; the rest of the file names rows of them
 //   /structures/parent /type /name [n] uint32, frame [n, 3, 4] float64

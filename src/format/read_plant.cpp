@@ -9,6 +9,7 @@
 
 #include <format/text.hpp>
 #include <sunfleck/core/error.hpp>
+#include <sunfleck/format/species_toml.hpp>
 
 namespace sunfleck {
 
@@ -22,7 +23,8 @@ Plant read_by_suffix(const std::string& file) {
   if (suffix == ".ply") return read_ply(file);
   if (suffix == ".can") return read_can(file);
   if (suffix == ".h5") return read_plant_h5(file);
-  throw InputError(file, suffix.empty() ? "no suffix" : "suffix " + in_quotes(suffix), ".opf, .obj, .ply, .can or .h5");
+  if (suffix == ".toml") return read_species_plant(file);
+  throw InputError(file, suffix.empty() ? "no suffix" : "suffix " + in_quotes(suffix), ".opf, .obj, .ply, .can, .h5 or .toml (a species)");
 }
 
 }  // namespace

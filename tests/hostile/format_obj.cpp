@@ -46,3 +46,11 @@ TEST_CASE("A missing file, a folder and an unknown suffix are refused", "[format
   std::filesystem::create_directories(file.folder() + "/folder.obj");
   CHECK(message_of(file, [&] { read_plant(file.folder() + "/folder.obj"); }) == "folder.obj: found a folder; expected a file");
 }
+
+TEST_CASE("An unknown suffix is refused with the known ones", "[format]") {
+  const TextFile file("plant.txt", "hello"), none("plant", "hello");
+  CHECK(message_of(file, [&] { read_plant(file.path); }) ==
+        "plant.txt: found suffix \".txt\"; expected .opf, .obj, .ply, .can, .h5 or .toml (a species)");
+  CHECK(message_of(none, [&] { read_plant(none.path); }) ==
+        "plant: found no suffix; expected .opf, .obj, .ply, .can, .h5 or .toml (a species)");
+}

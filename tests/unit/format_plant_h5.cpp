@@ -83,6 +83,14 @@ TEST_CASE("A plant file is complete or absent", "[format][h5]") {
   CHECK(files == 2);  // no temporary is left behind
 }
 
+TEST_CASE("A species read through the door grows and survives HDF5", "[format][h5]") {
+  const Plant plant = read_plant(SUNFLECK_SOURCE_DIR "/plants/maize.toml");
+  CHECK(plant.facet_count() > 100);
+  const TextFile folder("anything", "");
+  write_plant_h5(plant, folder.folder() + "/maize.h5");
+  check_same(plant, read_plant(folder.folder() + "/maize.h5"));
+}
+
 TEST_CASE("The coffee plant survives HDF5", "[format][h5][extra]") {
   const std::string path = extra_data("plants/coffee.opf");
   if (path.empty()) {
