@@ -98,7 +98,9 @@ Shares split(const TomlValue& global, const SunPosition& sun, Scene& scene) {
   return out;
 }
 
-Sky read_sky(const TomlValue& table, const Scene& scene, const std::optional<SunPosition>& sun, const std::optional<Shares>& shares) {
+/// Nothing where it gives no light, so that a night may keep the day's model.
+std::optional<Sky> read_sky(const TomlValue& table, const Scene& scene, const std::optional<SunPosition>& sun,
+                            const std::optional<Shares>& shares) {
   Sky sky;
   const auto model = table.need("model", "one of " + joined(sky_model_names()));
   const std::string name = model.text();
@@ -113,6 +115,7 @@ Sky read_sky(const TomlValue& table, const Scene& scene, const std::optional<Sun
     sky.irradiance =
         read_per_band(table.need("irradiance", "the irradiance per band, on an unobstructed horizontal plane"), scene, irradiance_value);
   }
+  if (std::all_of(sky.irradiance.begin(), sky.irradiance.end(), [](double e) { return e == 0; })) return std::nullopt;
   if (sun) sky.sun = sun->direction;
   prepare_sky(sky, model.where());
   return sky;

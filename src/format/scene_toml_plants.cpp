@@ -1,7 +1,9 @@
 // [[plant]], [[group]] and [[place]].
 #include <algorithm>
 #include <filesystem>
+#include <limits>
 #include <map>
+#include <optional>
 #include <set>
 #include <tuple>
 
@@ -10,6 +12,7 @@
 #include <sunfleck/core/error.hpp>
 #include <sunfleck/core/names.hpp>
 #include <sunfleck/format/read_plant.hpp>
+#include <sunfleck/format/species_toml.hpp>
 #include <sunfleck/scene/build.hpp>
 
 #include <format/scene_toml_parts.hpp>
@@ -18,15 +21,24 @@ namespace sunfleck {
 
 namespace {
 
-/// Plants by file and unit: a file that several entries name is read once.
-using PlantCache = std::map<std::tuple<std::string, double>, std::shared_ptr<const Plant>>;
+/// What makes a plant: its file and unit, or its species, age and seed.
+using PlantKey = std::tuple<std::string, double, std::optional<double>, std::optional<std::int64_t>>;
+/// A plant that several entries name is read or grown once.
+using PlantCache = std::map<PlantKey, std::shared_ptr<const Plant>>;
 
 std::shared_ptr<const Plant> read_shared(const TomlValue& table, const Scene& scene, PlantCache& cache) {
   const std::string file = read_path(table.need("file", "the plant's file"), scene, "a plant file");
-  const double unit_m = read_unit(table);
-  auto& plant = cache[{std::filesystem::weakly_canonical(file).string(), unit_m}];
+  const bool is_species = std::filesystem::path(file).extension() == ".toml";
+  const auto age = table.get("age"), seed = table.get("seed"), unit = table.get("unit");
+  if (is_species && unit) unit->fail("`unit` beside a species", "none: species grow in metres");
+  if (!is_species && (age || seed))
+    (age ? age : seed)->fail(fmt::format("`{}` beside a file that is no species .toml", age ? "age" : "seed"), "it with species only");
+  PlantKey key{std::filesystem::weakly_canonical(file).string(), read_unit(table), {}, {}};
+  if (age) std::get<2>(key) = age->positive();
+  if (seed) std::get<3>(key) = seed->integer(0, std::numeric_limits<std::int64_t>::max());
+  auto& plant = cache[key];
   if (!plant) {
-    auto read = read_plant(file, unit_m);
+    auto read = is_species ? read_species_plant(file, std::get<2>(key), std::get<3>(key)) : read_plant(file, std::get<1>(key));
     check_plant(read);
     plant = std::make_shared<const Plant>(std::move(read));
   }
@@ -114,7 +126,7 @@ class OpticsMap {
       if (key == "*" || names.count(key)) continue;
       const std::string what = fmt::format("a key that is no structure name, type or material of {}", plant.file);
       const std::string nearest = nearest_name(key, unnamed);
-      if (!nearest.empty()) entry.value.fail(what, "did you mean \"" + nearest + "\"?");
+      if (!nearest.empty()) entry.value.fail(what, "one that is; did you mean \"" + nearest + "\"?");
       scene.notes.push_back(entry.value.where() + ": " + what);
     }
   }
@@ -221,7 +233,7 @@ void note_unplaced(Scene& scene, const Names& names) {
 }  // namespace
 
 TomlSchema plant_schema() {
-  return TomlSchema::of({"name", "file", "unit", "policy"},
+  return TomlSchema::of({"name", "file", "unit", "age", "seed", "policy"},
                         {{"optics", TomlSchema::names(TomlSchema::leaf())}, {"place", placement_schema({})}, {"grid", grid_schema()}});
 }
 

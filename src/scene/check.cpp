@@ -142,6 +142,7 @@ class Check {
     for (std::size_t g = 0; g < scene_.groups.size(); ++g) {
       const auto& group = scene_.groups[g];
       const std::string key = fmt::format("group[{}]", g);
+      if (group.members.empty()) fail(key, "no member", "at least one plant or group");
       for (std::size_t i = 0; i < group.members.size(); ++i) {
         const auto& member = group.members[i];
         const std::size_t rows = member.is_group ? scene_.groups.size() : scene_.plants.size();

@@ -1,5 +1,7 @@
 #include <sunfleck/scene/counts.hpp>
 
+#include <algorithm>
+#include <optional>
 #include <unordered_set>
 
 namespace sunfleck {
@@ -12,7 +14,7 @@ class GroupContents {
   explicit GroupContents(const Scene& scene) : scene_(scene), known_(scene.groups.size()) {}
 
   const std::vector<std::uint64_t>& of(std::uint32_t group) {
-    if (!known_[group].empty()) return known_[group];
+    if (known_[group]) return *known_[group];
     std::vector<std::uint64_t> copies(scene_.plants.size(), 0);
     for (const auto& member : scene_.groups[group].members) {
       if (!member.is_group) {
@@ -20,14 +22,15 @@ class GroupContents {
         continue;
       }
       const auto& inner = of(member.index);
-      for (std::size_t p = 0; p < copies.size(); ++p) copies[p] += inner[p];
+      for (std::size_t p = 0; p < copies.size(); ++p) copies[p] = std::min(too_many_copies, copies[p] + inner[p]);
     }
-    return known_[group] = std::move(copies);
+    known_[group] = std::move(copies);
+    return *known_[group];
   }
 
  private:
   const Scene& scene_;
-  std::vector<std::vector<std::uint64_t>> known_;
+  std::vector<std::optional<std::vector<std::uint64_t>>> known_;
 };
 
 std::uint64_t ground_facets(const Scene& scene) {
@@ -43,13 +46,19 @@ std::uint64_t ground_organs(const Scene& scene) {
 
 }  // namespace
 
+std::vector<std::uint64_t> placed_copies(const Scene& scene) {
+  std::vector<std::uint64_t> copies;
+  GroupContents contents(scene);
+  for (const auto& entry : scene.plants) copies.push_back(std::min<std::uint64_t>(too_many_copies, entry.placements.size()));
+  for (std::uint32_t g = 0; g < scene.groups.size(); ++g)
+    if (const auto placed = std::min<std::uint64_t>(too_many_copies >> 1, scene.groups[g].placements.size()); placed > 0)
+      for (std::size_t p = 0; p < copies.size(); ++p) copies[p] = std::min(too_many_copies, copies[p] + placed * contents.of(g)[p]);
+  return copies;
+}
+
 SceneCounts count(const Scene& scene) {
   SceneCounts counts;
-  GroupContents contents(scene);
-  for (const auto& entry : scene.plants) counts.copies.push_back(entry.placements.size());
-  for (std::uint32_t g = 0; g < scene.groups.size(); ++g)
-    if (const auto placed = scene.groups[g].placements.size(); placed > 0)
-      for (std::size_t p = 0; p < counts.copies.size(); ++p) counts.copies[p] += placed * contents.of(g)[p];
+  counts.copies = placed_copies(scene);
 
   std::unordered_set<const Plant*> seen;
   for (std::size_t p = 0; p < scene.plants.size(); ++p) {

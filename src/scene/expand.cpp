@@ -1,11 +1,10 @@
 #include <sunfleck/scene/facets.hpp>
 
-#include <algorithm>
 #include <limits>
-#include <optional>
 #include <unordered_map>
 
 #include <sunfleck/core/error.hpp>
+#include <sunfleck/scene/counts.hpp>
 
 namespace sunfleck {
 
@@ -37,7 +36,7 @@ class Expansion {
         placements_(out.organs.placements) {}
 
   void run() {
-    reserve(count());
+    reserve();
     for (std::uint32_t p = 0; p < scene_.plants.size(); ++p) {
       const auto& entry = scene_.plants[p];
       for (std::size_t i = 0; i < entry.placements.size(); ++i) add_plant(p, entry.placements[i].map, label(entry.name, i));
@@ -49,56 +48,27 @@ class Expansion {
   }
 
  private:
-  struct Count {
+  /// Takes the memory of what will be written, or refuses to, before a facet of it is.
+  void reserve() {
+    constexpr std::uint64_t limit = std::uint64_t{1} << 31;
     std::uint64_t facets = 0, shapes = 0, copies = 0;
-    void add(const Count& more, std::uint64_t times) {
-      facets = limited(facets, more.facets, times);
-      shapes = limited(shapes, more.shapes, times);
-      copies = limited(copies, more.copies, times);
+    if (const auto& ground = scene_.ground)
+      facets += ground->mesh ? ground->mesh->triangles.size() : std::uint64_t{2} * ground->cells[0] * ground->cells[1];
+    const auto copies_of = placed_copies(scene_);
+    for (std::size_t p = 0; p < copies_of.size() && facets <= limit; ++p) {
+      const Plant& plant = *scene_.plants[p].plant;
+      facets += copies_of[p] * plant.facet_count();
+      shapes += copies_of[p] * plant.shapes.size();
+      copies += copies_of[p];
     }
-    /// a + b * times, or the limit: groups in groups multiply beyond any integer.
-    static std::uint64_t limited(std::uint64_t a, std::uint64_t b, std::uint64_t times) {
-      return b != 0 && times > (limit + 1 - a) / b ? limit + 1 : std::min(limit + 1, a + b * times);
-    }
-  };
-
-  Count count_of_plant(const PlantEntry& entry) const { return {entry.plant->facet_count(), entry.plant->shapes.size(), 1}; }
-
-  Count count_of_group(std::uint32_t g, std::vector<std::optional<Count>>& known) const {
-    if (known[g]) return *known[g];
-    Count sum;
-    for (const auto& member : scene_.groups[g].members)
-      sum.add(member.is_group ? count_of_group(member.index, known) : count_of_plant(scene_.plants[member.index]), 1);
-    known[g] = sum;
-    return sum;
-  }
-
-  /// What will be written, before a byte of it is.
-  Count count() const {
-    Count sum;
-    std::vector<std::optional<Count>> known(scene_.groups.size());
-    for (const auto& entry : scene_.plants)
-      if (!entry.placements.empty()) sum.add(count_of_plant(entry), entry.placements.size());
-    for (std::uint32_t g = 0; g < scene_.groups.size(); ++g)
-      if (!scene_.groups[g].placements.empty()) sum.add(count_of_group(g, known), scene_.groups[g].placements.size());
-    if (scene_.ground)
-      sum.add({scene_.ground->mesh ? scene_.ground->mesh->triangles.size()
-                                   : std::uint64_t{2} * scene_.ground->cells[0] * scene_.ground->cells[1],
-               0, 0},
-              1);
-    if (sum.facets > limit || sum.shapes > limit || sum.copies > limit)
-      throw InputError(location(scene_.file), "more than 2^31 facets", "fewer copies, or smaller plants");
-    return sum;
-  }
-
-  void reserve(const Count& count) {
-    out_.corners.reserve(count.facets);
-    out_.area.reserve(count.facets);
-    out_.optics.reserve(count.facets);
-    out_.organ.reserve(count.facets);
-    out_.shapes.reserve(count.shapes);
-    out_.copies.reserve(count.copies);
-    out_.copy_plant.reserve(count.copies);
+    if (facets > limit) throw InputError(location(scene_.file), "more than 2^31 facets", "fewer copies, or smaller plants");
+    out_.corners.reserve(facets);
+    out_.area.reserve(facets);
+    out_.optics.reserve(facets);
+    out_.organ.reserve(facets);
+    out_.shapes.reserve(shapes);
+    out_.copies.reserve(copies);
+    out_.copy_plant.reserve(copies);
   }
 
   static std::string label(const std::string& name, std::size_t i) { return name + "[" + std::to_string(i) + "]"; }
@@ -192,7 +162,6 @@ class Expansion {
       }
   }
 
-  static constexpr std::uint64_t limit = std::uint64_t{1} << 31;
   const Scene& scene_;
   FacetScene& out_;
   Interned names_, types_, plants_, placements_;

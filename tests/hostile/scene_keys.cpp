@@ -46,7 +46,7 @@ TEST_CASE("All unknown keys are reported at once with the nearest known one", "[
         "scene.toml:12: plant[0].units: unknown key; did you mean \"unit\"?\n"
         "scene.toml:13: plant[0].place[0].positon: unknown key; did you mean \"position\"?\n"
         "scene.toml:14: plant[0].place[1].trun: unknown key; did you mean \"turn\"?\n"
-        "scene.toml:15: plant[0].zzz: unknown key; known here: name, file, unit, policy, optics, place, grid\n"
+        "scene.toml:15: plant[0].zzz: unknown key; known here: name, file, unit, age, seed, policy, optics, place, grid\n"
         "scene.toml:16: snu: unknown key; did you mean \"sun\"?");
   CHECK(message("bands = [\"PAR\"]\n[[state]]\nsky = { modell = \"uniform\", irradiance = { PAR = 1 } }\n") ==
         "scene.toml:3: state[0].sky.modell: unknown key; did you mean \"model\"?");

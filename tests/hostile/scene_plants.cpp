@@ -117,6 +117,19 @@ TEST_CASE("Plants that cannot be read", "[hostile][scene]") {
         "scene.toml:6: plant[0].name: found \"p/q\"; expected a name without \"/\", which separates the parts of a placement's path");
 }
 
+TEST_CASE("Species take an age and a seed, other plants a unit", "[hostile][scene]") {
+  const std::string all = "optics = { \"*\" = \"leaf\" }\n";
+  const std::string maize = "file = \"" + std::string(SUNFLECK_SOURCE_DIR) + "/plants/maize.toml\"\n" + all;
+  CHECK(plant("file = \"two.obj\"\nage = 3\n" + all) ==
+        "scene.toml:8: plant[0].age: found `age` beside a file that is no species .toml; expected it with species only");
+  CHECK(plant("file = \"two.obj\"\nseed = 3\n" + all) ==
+        "scene.toml:8: plant[0].seed: found `seed` beside a file that is no species .toml; expected it with species only");
+  CHECK(plant(maize + "unit = \"cm\"\n") ==
+        "scene.toml:9: plant[0].unit: found `unit` beside a species; expected none: species grow in metres");
+  CHECK(plant(maize + "age = -1\n") == "scene.toml:9: plant[0].age: found -1; expected a number above zero");
+  CHECK(plant(maize + "seed = 0.5\n") == "scene.toml:9: plant[0].seed: found 0.5; expected a whole number of at least 0");
+}
+
 TEST_CASE("Placements that cannot be", "[hostile][scene]") {
   CHECK(place("place = [ { turn = 3 } ]\n") ==
         "scene.toml:9: plant[0].place[0].position: found nothing; expected [x, y, z] [m], or `grid`, or `file`");

@@ -124,6 +124,8 @@ TEST_CASE("Groups in memory may not hold themselves or what is not there", "[sce
   scene.groups[1].name = "row";
   scene.groups[2].name = "stand";
   scene.groups[0].members = {{false, 0, placed({})}};
+  CHECK(refusal(scene) == "scene in memory: group[1]: found no member; expected at least one plant or group");
+  scene.groups[2].members = scene.groups[0].members;
   scene.groups[1].members = {{true, 0, placed({})}, {true, 2, placed({})}, {true, 0, placed({})}};
   CHECK(refusal(scene) == "");
   scene.groups[2].members = {{false, 0, placed({})}, {true, 1, placed({})}};

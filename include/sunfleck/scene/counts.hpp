@@ -8,6 +8,12 @@
 
 namespace sunfleck {
 
+/// More copies than any scene can hold: where groups of groups multiply beyond it, counts stay here instead of wrapping around.
+inline constexpr std::uint64_t too_many_copies = std::uint64_t{1} << 32;
+
+/// Per row of Scene::plants: placed copies, through groups of any depth, at most too_many_copies. No cycle among groups.
+std::vector<std::uint64_t> placed_copies(const Scene& scene);
+
 struct SceneCounts {
   std::vector<std::uint64_t> copies;  ///< per row of Scene::plants: placed copies, through groups of any depth
   std::uint64_t plant_facets = 0;     ///< of all copies
