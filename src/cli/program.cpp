@@ -78,6 +78,34 @@ constexpr const char* method_help =
 constexpr const char* quality_help = "accuracy against time: 'draft', 'standard' (the default) or 'fine'";
 const std::vector<std::string> qualities{"draft", "standard", "fine"};
 
+void add_solve(CLI::App& verb, SolveOptions& o) {
+  verb.add_option("SCENE", o.scene, "scene file, TOML")->required()->type_name("");
+  verb.add_option("-o,--output", o.result, "result to write, HDF5; replaced only when the new one is complete")
+      ->required()
+      ->type_name("RESULT.h5");
+  verb.add_option("--method", o.method, method_help)->type_name("NAME");
+  verb.add_option("--quality", o.quality, quality_help)->type_name("NAME")->check(one_of(qualities));
+  verb.add_option("--error", o.error,
+                  "wanted rms error of an organ's absorbed light, as a fraction of the mean (0.01 is 1 %); picks the quality")
+      ->type_name("FRACTION")
+      ->check(number_between(1e-4, 0.5));
+  verb.add_option("--samples", o.samples, "reference method only: paths per facet")->type_name("N")->check(count_from(16, 4294967295.0));
+  verb.add_option("--threads", o.threads, "threads to use; 0 is all cores. The result has the same bits for any number")
+      ->type_name("N")
+      ->check(count_from(0, 4096));
+  verb.add_option("--seed", o.seed, "seed of all sampling (default 1)")->type_name("N")->check(count_from(0));
+  verb.add_flag("!--no-certificate", o.certificate, "skip the check of the result against path tracing; the result then says so");
+  verb.footer(
+      "The table on standard output holds, per lighting state and band, incident and absorbed light [W, or umol/s where the scene says "
+      "so],\n"
+      "the absorbed fraction, the albedo, the balance's residual and the certified error.\n\n"
+      "Exit codes: 0 done, 1 the result could not be written, 2 bad usage or input, 3 not converged (result written), 4 stopped.\n\n"
+      "Examples:\n"
+      "  sunfleck solve plants/stand.toml -o stand.h5\n"
+      "  sunfleck solve field.toml -o draft.h5 --quality draft --no-certificate\n"
+      "  sunfleck solve field.toml -o truth.h5 --method reference --samples 4096");
+}
+
 void add_plan(CLI::App& verb, PlanOptions& o) {
   verb.add_option("SCENE", o.scene, "scene file, TOML")->required()->type_name("");
   verb.add_option("--method", o.method, method_help)->type_name("NAME");
@@ -137,6 +165,7 @@ class Program {
     app_.footer(
         "Each verb has its own help: sunfleck VERB --help. Data go to standard output, progress and messages to standard error.\n"
         "Exit codes: 0 done, 1 output failed, 2 bad usage or input, 3 did not converge (the result is written), 4 stopped.");
+    add("solve", "the light that every facet and organ absorbs, into a result file", add_solve, verbs_.solve, verb_solve);
     add("plan", "what a solve would do and leave out, its memory and work, without solving", add_plan, verbs_.plan, verb_plan);
     add("compare", "the error of one result against another", add_compare, verbs_.compare, verb_compare);
     add("generate", "a procedural plant from a species file", add_generate, verbs_.generate, verb_generate);

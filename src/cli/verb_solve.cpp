@@ -1,0 +1,102 @@
+#include <sunfleck/cli/verbs.hpp>
+
+#include <optional>
+#include <string>
+
+#include <fmt/format.h>
+#include <tbb/global_control.h>
+
+#include <sunfleck/core/error.hpp>
+#include <sunfleck/core/memory.hpp>
+#include <sunfleck/core/version.hpp>
+#include <sunfleck/format/scene_toml.hpp>
+#include <sunfleck/radiosity/solve.hpp>
+#include <sunfleck/reference/path_tracer.hpp>
+#include <sunfleck/result/result_writer.hpp>
+#include <sunfleck/scene/facets.hpp>
+
+#include "cli/method_choice.hpp"
+#include "cli/output_path.hpp"
+#include "cli/solve_table.hpp"
+#include "cli/text_units.hpp"
+
+namespace sunfleck {
+
+namespace {
+
+constexpr int not_converged = 3;  // exit code
+
+void say_what_was_read(const Scene& scene, const FacetScene& facets, double seconds, Progress& progress) {
+  for (const auto& note : scene.notes) progress.line("note: " + note);
+  progress.line(fmt::format("read {}: {} of plants, {} of the ground, {}, {}, {} ({:.2f} s)", scene.file,
+                            counted(facets.plant_facets, "facet", "facets"), facets.size() - facets.plant_facets,
+                            counted(facets.organs.size(), "organ", "organs"), counted(scene.band_count(), "band", "bands"),
+                            counted(scene.states.size(), "state", "states"), seconds));
+  if (facets.zero_area_facets > 0)
+    progress.line(
+        fmt::format("note: {} no area: kept as rows of zeros, not traced", counted(facets.zero_area_facets, "facet has", "facets have")));
+}
+
+SolveReport run_method(const MethodChoice& choice, const Scene& scene, const FacetScene& facets, const SolveOptions& options,
+                       std::uint64_t seed, IrradianceSink& sink, Progress& progress) {
+  if (choice.method == "reference") {
+    ReferenceSettings settings;
+    settings.seed = seed;
+    settings.threads = options.threads;
+    if (options.samples)
+      settings.samples = *options.samples;
+    else if (scene.solve.samples)
+      settings.samples = *scene.solve.samples;
+    return trace_reference(scene, facets, settings, sink, progress);
+  }
+  RadiositySettings settings;
+  settings.seed = seed;
+  settings.threads = options.threads;
+  settings.density = density_of(choice.quality);
+  settings.method = choice.method == "flat"     ? RadiosityMethod::flat
+                    : choice.method == "direct" ? RadiosityMethod::direct
+                                                : RadiosityMethod::clustering;
+  return solve_radiosity(scene, facets, settings, sink, progress);
+}
+
+void say_timings(const SolveReport& report, std::size_t facets, double seconds, Progress& progress) {
+  for (const auto& [phase, spent] : report.timings) progress.line(fmt::format("  {:<28}{:>9.2f} s", phase, spent));
+  progress.line(fmt::format("  {:<28}{:>9.2f} s  {} facets/s, peak memory {}", "in all", seconds,
+                            count_text(static_cast<double>(facets) / seconds), bytes_text(static_cast<double>(peak_resident_bytes()))));
+}
+
+}  // namespace
+
+int verb_solve(const SolveOptions& options, Progress& progress) {
+  const Stopwatch total;
+  check_output_path(options.result, {".h5", ".hdf5"}, {options.scene});
+  std::optional<tbb::global_control> limit;
+  if (options.threads > 0) limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(options.threads));
+
+  const Scene scene = read_scene(options.scene);
+  const MethodChoice choice = choose_method(options.method, options.quality, options.error, scene.solve);
+  const std::uint64_t seed = options.seed.value_or(scene.solve.seed.value_or(1));
+  const FacetScene facets = expand(scene);
+  const double read_seconds = total.seconds();
+  say_what_was_read(scene, facets, read_seconds, progress);
+  progress.check();
+
+  ResultWriter writer(options.result, scene, facets, scene.output, software_version(), choice.method);
+  SolveReport report = run_method(choice, scene, facets, options, seed, writer, progress);
+  report.timings.emplace(report.timings.begin(), "read", read_seconds);
+
+  progress.check();
+  const Stopwatch finishing;
+  writer.finish(report, nullptr);
+  add_seconds(report.timings, "finish the file", finishing.seconds());
+
+  print_solve_table(scene, report, nullptr);
+  say_timings(report, facets.size(), total.seconds(), progress);
+  progress.line("wrote " + options.result);
+  if (report.status == SolveStatus::converged) return 0;
+  progress.line(fmt::format("sunfleck: did not converge: the residual reached is {:.2e}; the result is written with status 'not_converged'",
+                            report.convergence.empty() ? 0.0 : report.convergence.back().residual));
+  return not_converged;
+}
+
+}  // namespace sunfleck
