@@ -1,12 +1,6 @@
 #include "result/output_file.hpp"
 
 #include <cerrno>
-#include <cstdio>
-#include <cstring>
-#include <filesystem>
-
-#include <fcntl.h>
-#include <unistd.h>
 
 #include <sunfleck/core/error.hpp>
 
@@ -14,52 +8,27 @@
 
 namespace sunfleck::h5 {
 
-namespace {
-
-[[noreturn]] void fail(const std::string& path, const std::string& why) { throw OutputError(path + ": cannot be written: " + why); }
-
-}  // namespace
-
-OutputFile::OutputFile(const std::string& path) : path_(path), final_(path) {
-  namespace fs = std::filesystem;
-  std::error_code error;
-  if (path.empty()) throw UsageError("the name of the result file is empty");
-  if (fs::is_symlink(path, error)) final_ = fs::weakly_canonical(path, error).string();  // keep the link, replace what it points to
-  if (fs::is_directory(final_, error)) fail(path_, "it is a directory");
-  if (fs::exists(final_, error) && !fs::is_regular_file(final_, error)) fail(path_, "it is not a regular file");
-
-  const fs::path place(final_);
-  temporary_ = (place.parent_path() / ("." + place.filename().string() + ".partial-" + std::to_string(::getpid()))).string();
-  ::unlink(temporary_.c_str());
-  state_.descriptor = ::open(temporary_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-  if (state_.descriptor < 0) fail(path_, std::strerror(errno));
-
+OutputFile::OutputFile(const std::string& path) : replaced_(path) {
   const Quiet quiet;
-  const Id access = output_access(state_);
-  if (access) {
+  state_.descriptor = replaced_.descriptor();
+  const Id access = output_access(state_), creation{H5Pcreate(H5P_FILE_CREATE)};
+  if (access && creation) {
     H5Pset_libver_bounds(access.get(), H5F_LIBVER_V110, H5F_LIBVER_V110);
-    Id creation{H5Pcreate(H5P_FILE_CREATE)};
     H5Pset_obj_track_times(creation.get(), false);  // the same bytes on every run
-    file_ = Id{H5Fcreate(temporary_.c_str(), H5F_ACC_TRUNC, creation.get(), access.get())};
+    file_ = Id{H5Fcreate(replaced_.temporary().c_str(), H5F_ACC_TRUNC, creation.get(), access.get())};
   }
-  if (!file_) {
-    ::close(state_.descriptor);
-    ::unlink(temporary_.c_str());
-    fail(path_, state_.error ? std::strerror(state_.error) : "HDF5 cannot create it");
-  }
+  check(static_cast<bool>(file_));
 }
 
 OutputFile::~OutputFile() {
   const Quiet quiet;
-  if (!committed_ && state_.error == 0) state_.error = ECANCELED;  // nothing more needs to reach the disk
+  if (state_.error == 0) state_.error = ECANCELED;  // an unfinished file need not reach the disk
   file_.close();
-  if (state_.descriptor >= 0) ::close(state_.descriptor);
-  if (!committed_) ::unlink(temporary_.c_str());
 }
 
 void OutputFile::check(bool good) const {
-  if (state_.error != 0) fail(path_, std::strerror(state_.error));
-  if (!good) fail(path_, "HDF5 refused to store a dataset");
+  if (state_.error != 0) replaced_.fail(state_.error);
+  if (!good) throw OutputError(path() + ": cannot be written: HDF5 refused to store a dataset");
 }
 
 void OutputFile::commit() {
@@ -68,11 +37,7 @@ void OutputFile::commit() {
   check(flushed);
   file_.close();
   check();
-  if (::fsync(state_.descriptor) != 0) fail(path_, std::strerror(errno));
-  const int descriptor = std::exchange(state_.descriptor, -1);
-  if (::close(descriptor) != 0) fail(path_, std::strerror(errno));
-  if (std::rename(temporary_.c_str(), final_.c_str()) != 0) fail(path_, std::strerror(errno));
-  committed_ = true;
+  replaced_.commit();
 }
 
 }  // namespace sunfleck::h5

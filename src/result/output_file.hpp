@@ -1,9 +1,10 @@
-// A file that is complete or absent: grows under a temporary name, takes its own name at the end.
+// A new HDF5 file that is complete or absent.
 #pragma once
 
 #include <string>
 
 #include <sunfleck/core/h5.hpp>
+#include <sunfleck/core/replaced_file.hpp>
 
 namespace sunfleck::h5 {
 
@@ -24,17 +25,16 @@ class OutputFile {
   OutputFile& operator=(const OutputFile&) = delete;
 
   hid_t id() const { return file_.get(); }
-  const std::string& path() const { return path_; }
+  const std::string& path() const { return replaced_.path(); }
   /// Throws OutputError naming the file if a write has failed, or if `good` is false.
   void check(bool good = true) const;
   /// Flushes to the disk and renames. All handles of datasets must be closed.
   void commit();
 
  private:
-  std::string path_, final_, temporary_;
+  ReplacedFile replaced_;
   DriverState state_;
   Id file_;
-  bool committed_ = false;
 };
 
 }  // namespace sunfleck::h5

@@ -32,10 +32,12 @@ std::vector<Triangle> ResultGeometry::corners(std::size_t first, std::size_t cou
       *this, first, count,
       [&](const Copy& copy, std::size_t shape, std::size_t triangle, std::size_t n, std::size_t at) {
         const Plant& plant = *plants[copy.plant].plant;
-        const bool mirrors = copy.map.mirrors();
+        const Shape& piece = plant.shapes[shape];
+        const Affine to_world = copy.map * piece.placement;
+        const bool mirrors = to_world.mirrors();
         for (std::size_t i = 0; i < n; ++i) {
-          Triangle c = shape_triangle(plant, plant.shapes[shape], static_cast<std::uint32_t>(triangle + i));
-          for (auto& p : c) p = copy.map.point(p);
+          Triangle c = plant.meshes[piece.mesh].corners(piece.first_triangle + triangle + i);
+          for (auto& p : c) p = to_world.point(p);
           if (mirrors) std::swap(c[1], c[2]);
           out[at + i] = c;
         }

@@ -9,6 +9,20 @@
 using namespace sunfleck;
 using namespace sunfleck::test;
 
+namespace {
+
+/// Largest distance of two lists of corners [m]. Maps may be contracted to fused multiply-adds in one place and not in the other.
+double distance(const std::vector<Triangle>& a, const std::vector<Triangle>& b) {
+  if (a.size() != b.size()) return 1e9;
+  double worst = 0;
+  for (std::size_t i = 0; i < a.size(); ++i)
+    for (std::size_t c = 0; c < 3; ++c) worst = std::max(worst, glm::length(a[i][c] - b[i][c]));
+  return worst;
+}
+constexpr double rounding = 1e-12;  // 2^-53 of scenes some hundred metres wide, a few roundings
+
+}  // namespace
+
 TEST_CASE("SHA-256 gives the digests of FIPS 180-4", "[result]") {
   CHECK(sha256_hex("") == "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
   CHECK(sha256_hex("abc") == "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
@@ -87,12 +101,12 @@ TEST_CASE("A result file gives back what was written", "[result]") {
   // The scene can be drawn from the file alone, with the coordinates that the solver had.
   const ResultGeometry geometry = result.geometry();
   REQUIRE(geometry.facet_count() == n);
-  CHECK(geometry.corners(0, n) == facets.corners);
+  CHECK(distance(geometry.corners(0, n), facets.corners) < rounding);
   CHECK(geometry.optics(0, n) == facets.optics);
   for (const std::size_t first : {std::size_t{0}, std::size_t{2}, n / 2, n - 9})
     for (const std::size_t count : {1, 4, 9}) {
       const std::vector<Triangle> part(facets.corners.begin() + static_cast<std::ptrdiff_t>(first), facets.corners.begin() + static_cast<std::ptrdiff_t>(first + count));
-      CHECK(geometry.corners(first, count) == part);
+      CHECK(distance(geometry.corners(first, count), part) < rounding);
     }
   CHECK(result.materials()[0].reflectance_back == scene.optics[0].reflectance_back);
 
@@ -160,7 +174,7 @@ TEST_CASE("[output] decides what a result keeps", "[result]") {
     CHECK_FALSE(r.has("facets"));
     CHECK(r.facet_count() == 0);
     CHECK(r.has("organs/absorbed"));
-    CHECK(r.geometry().corners(0, facets.size()) == facets.corners);
+    CHECK(distance(r.geometry().corners(0, facets.size()), facets.corners) < rounding);
   }
   SECTION("two datasets") {
     const auto r = write({true, {"facets/absorbed", "organs/absorbed"}});

@@ -13,7 +13,7 @@
 
 namespace sunfleck {
 
-/// Holds each mesh once; facets are made on request, with the coordinates that the solver had, to the last bit.
+/// Holds each mesh once; facets are made on request, as the solver had them (coordinates to the last bit where nothing is contracted).
 struct ResultGeometry {
   struct Copy {
     std::uint32_t plant = 0;        ///< row of `plants`
