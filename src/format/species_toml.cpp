@@ -88,6 +88,8 @@ const Keys<CerealGrowth> stem_keys{
     {"basal_nodes", &CerealGrowth::basal_nodes, 0, 60},
     {"basal_length", &CerealGrowth::basal_length_m, 1e-4, 0.5, "m"},
     {"upper_length", &CerealGrowth::upper_length_m, 1e-3, 1, "m"},
+    {"elongation_start", &CerealGrowth::elongation_start, 0, 1000, "days"},
+    {"peduncle_length", &CerealGrowth::peduncle_length_m, 0, 1, "m"},
     {"base_radius", &CerealGrowth::base_radius_m, 1e-4, 0.1, "m"},
     {"top_radius", &CerealGrowth::top_radius_m, 1e-4, 0.1, "m"},
     {"sides", &CerealGrowth::sides, 3, 24},

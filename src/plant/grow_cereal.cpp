@@ -17,9 +17,10 @@ constexpr double pi = 3.141592653589793;
 struct Stem {
   std::int64_t order = 1;
   std::uint64_t key = 0;
-  double born = 0;   ///< age of the plant when its first leaf appears [days]
-  double scale = 1;  ///< of its lengths
-  long leaves = 1;   ///< final number
+  double born = 0;         ///< age of the plant when its first leaf appears [days]
+  double scale = 1;        ///< of its lengths
+  long leaves = 1;         ///< final number
+  double basal_nodes = 0;  ///< so many lowest nodes stay short
   Vec3 foot{0.0};
   double tilt_rad = 0, heading_rad = 0;
   double azimuth_rad = 0;  ///< of its first leaf
@@ -36,6 +37,7 @@ class CerealGrower {
     stem.key = mix(seed_, 1);
     RandomStream random(mix(stem.key, 2));
     stem.leaves = std::max(1L, std::lround(g_.leaves + g_.leaves_spread * spread(random)));
+    stem.basal_nodes = g_.basal_nodes;
     stem.heading_rad = 2 * pi * random.next();
     stem.tilt_rad = radians(g_.lean_deg) * random.next();
     stem.azimuth_rad = 2 * pi * random.next();
@@ -59,10 +61,12 @@ class CerealGrower {
     return end + (1 - end) * 0.5 * (1 + std::cos(pi * to_end));
   }
 
+  /// What one sees of a phytomer's stem now [m]. Internodes elongate one after the other, half a phyllochron apart.
   double segment_length(const Stem& stem, long rank) const {
-    const double above = static_cast<double>(rank) + 1 - g_.basal_nodes;
-    const double elongation = std::clamp(above / 2.5, 0.0, 1.0);  // the first elongated internodes are shorter than those above
-    return stem.scale * (g_.basal_length_m + (g_.upper_length_m - g_.basal_length_m) * elongation);
+    const double born = stem.born + g_.phyllochron * static_cast<double>(rank), above = static_cast<double>(rank) + 1 - stem.basal_nodes;
+    const double tall = std::clamp(above / 2.5, 0.0, 1.0) * (g_.upper_length_m - g_.basal_length_m);  // the first ones are shorter
+    const double starts = std::max(born, g_.elongation_start + 0.5 * g_.phyllochron * std::max(0.0, above));
+    return stem.scale * (g_.basal_length_m * grown(born) + tall * std::clamp((age_ - starts) / g_.expansion, 0.0, 1.0));
   }
 
   double radius(const Stem& stem, double relative) const {
@@ -78,7 +82,7 @@ class CerealGrower {
     std::vector<double> lengths;
     double length = 0;
     for (long k = 0; k < visible; ++k) {
-      lengths.push_back(segment_length(stem, k) * grown(stem.born + g_.phyllochron * static_cast<double>(k)));
+      lengths.push_back(segment_length(stem, k));
       length += lengths.back();
     }
     const auto self = build_.open(parent, type, {frame, stem.foot}, stem.order, stem.order, length);
@@ -100,13 +104,31 @@ class CerealGrower {
       if (age_ - born <= g_.leaf_life) grow_blade(stem, k, born, top, frame[2], side, metamer);
       if (k < g_.tillers && stem.order < g_.highest_order && random.next() < g_.tiller_probability)
         grow_tiller(stem, k, position, side, metamer);
-      for (std::size_t i = 0; i < g_.inflorescences.size(); ++i) {
-        const auto& inflorescence = g_.inflorescences[i];
-        if (std::lround(inflorescence.rank * static_cast<double>(stem.leaves - 1)) == k)
-          grow_inflorescence(stem, inflorescence, top, frame, -side, inflorescence.rank < 1, metamer);
-      }
+      for (const auto& inflorescence : g_.inflorescences)
+        if (inflorescence.rank < 1 && age_ > inflorescence.appears &&
+            std::lround(inflorescence.rank * static_cast<double>(stem.leaves - 1)) == k)
+          grow_inflorescence(stem, inflorescence, top + radius(stem, relative) * -side, frame, -side, metamer);
       position = top;
       tilt *= 1 - g_.tiller_straightening;
+    }
+    if (visible == stem.leaves) grow_top(stem, position, frame, self);
+  }
+
+  /// The inflorescences at the top of a stem, above a bare piece of it.
+  void grow_top(const Stem& stem, const Vec3& from, const Mat3& frame, std::uint32_t self) {
+    std::uint32_t metamer = no_parent;
+    Vec3 top = from;
+    for (const auto& inflorescence : g_.inflorescences) {
+      if (inflorescence.rank < 1 || age_ <= inflorescence.appears) continue;
+      if (metamer == no_parent) {
+        const double share = std::clamp((age_ - inflorescence.appears) / inflorescence.expansion, 0.1, 1.0);
+        const double length = std::max(1e-4, g_.peduncle_length_m * stem.scale * share), thick = radius(stem, 1);
+        metamer = build_.open(self, "metamer", {frame, from}, stem.order, stem.order, length);
+        const auto internode = build_.open(metamer, "internode", {frame, from}, stem.order, stem.order, length);
+        top = from + length * frame[2];
+        build_.internode(internode, "stem", g_.sides, from, top, frame, thick, 0.8 * thick);
+      }
+      grow_inflorescence(stem, inflorescence, top, frame, frame[0], metamer);
     }
   }
 
@@ -159,6 +181,7 @@ class CerealGrower {
     tiller.key = mix(stem.key, 5, static_cast<std::uint64_t>(rank));
     RandomStream random(mix(tiller.key, 2));
     tiller.leaves = std::max(1L, std::lround(g_.tiller_leaves * static_cast<double>(stem.leaves - rank)));
+    tiller.basal_nodes = stem.basal_nodes - static_cast<double>(stem.leaves - tiller.leaves);  // as many tall internodes as its stem
     tiller.scale = stem.scale * g_.tiller_scale * (1 + 0.08 * spread(random));
     tiller.tilt_rad = radians(g_.tiller_deg) * (0.7 + 0.3 * random.next());
     tiller.heading_rad = std::atan2(side.y, side.x) + radians(25) * spread(random);
@@ -168,9 +191,8 @@ class CerealGrower {
     grow_stem(tiller, metamer, "tiller");
   }
 
-  void grow_inflorescence(const Stem& stem, const Inflorescence& what, const Vec3& node, const Mat3& frame, const Vec3& side, bool lateral,
+  void grow_inflorescence(const Stem& stem, const Inflorescence& what, const Vec3& from, const Mat3& frame, const Vec3& side,
                           std::uint32_t metamer) {
-    if (age_ <= what.appears) return;
     const double share = std::clamp((age_ - what.appears) / what.expansion, 0.3, 1.0), length = what.length_m * stem.scale * share;
     const auto [entry, fresh] = spikes_.try_emplace(&what, 0u);
     if (fresh)
@@ -179,7 +201,6 @@ class CerealGrower {
                              : spindle_mesh(what.radius_m / what.length_m, what.radius_m < 0.008 ? 4 : 8, what.radius_m < 0.008 ? 3 : 6));
     const double angle = radians(what.insertion_deg);
     const Vec3 along = glm::normalize(std::cos(angle) * frame[2] + std::sin(angle) * side);
-    const Vec3 from = lateral ? node + radius(stem, what.rank) * side : node;
     const Mat3 own = organ_frame(along, frame[1]);
     const auto organ = build_.open(metamer, what.type, {own, from}, stem.order, stem.order, length);
     for (std::int64_t i = 0; i < what.spikes; ++i) {

@@ -84,7 +84,8 @@ class TreeGrower {
         d = turned_to_elevation(d, radians(r.elevation_deg), radians(r.tropism_deg) * step);
         if (a == 0 && axis.nodes.empty()) d = frame[2];     // upright, so that its foot stays above the ground
         if (i == 0 && year > 0 && growth_.relay_deg > 0) {  // the apex died; the bud below it takes over
-          const Vec3 side = std::cos(azimuth) * frame[0] + std::sin(azimuth) * frame[1];
+          Vec3 side = std::cos(azimuth) * frame[0] + std::sin(azimuth) * frame[1];
+          side.z = std::max(side.z, 0.0);  // buds below a branch do not take over
           d = glm::normalize(std::cos(radians(growth_.relay_deg)) * d + std::sin(radians(growth_.relay_deg)) * side);
         }
         const double floor = 20 * clearance_m;

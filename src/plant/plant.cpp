@@ -9,8 +9,12 @@ namespace sunfleck {
 
 namespace {
 
-bool finite(const Vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
-bool finite(const Affine& a) { return finite(a.linear[0]) && finite(a.linear[1]) && finite(a.linear[2]) && finite(a.translation); }
+bool finite(const Vec3& v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+bool finite(const Affine& a) {
+  return finite(a.linear[0]) && finite(a.linear[1]) && finite(a.linear[2]) && finite(a.translation);
+}
 
 std::uint32_t index_in(std::vector<std::string>& names, const std::string& name) {
   for (std::size_t i = 0; i < names.size(); ++i)
@@ -27,7 +31,8 @@ std::string coordinates(const Vec3& v) {
 
 void check_mesh(const Mesh& mesh, const std::string& where) {
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i)
-    if (!finite(mesh.vertices[i])) throw InputError(where, "vertex " + std::to_string(i + 1) + " = " + coordinates(mesh.vertices[i]), "finite coordinates");
+    if (!finite(mesh.vertices[i]))
+      throw InputError(where, "vertex " + std::to_string(i + 1) + " = " + coordinates(mesh.vertices[i]), "finite coordinates");
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
     for (const auto index : mesh.triangles[t])
       if (index >= mesh.vertices.size())
@@ -56,9 +61,15 @@ Box Plant::bounds() const {
   return box;
 }
 
-std::uint32_t Plant::type_index(const std::string& type_name) { return index_in(types, type_name); }
-std::uint32_t Plant::attribute_index(const std::string& attribute_name) { return index_in(attribute_names, attribute_name); }
-std::uint32_t Plant::material_index(const std::string& material_name) { return index_in(materials, material_name); }
+std::uint32_t Plant::type_index(const std::string& type_name) {
+  return index_in(types, type_name);
+}
+std::uint32_t Plant::attribute_index(const std::string& attribute_name) {
+  return index_in(attribute_names, attribute_name);
+}
+std::uint32_t Plant::material_index(const std::string& material_name) {
+  return index_in(materials, material_name);
+}
 
 const AttributeValue* Plant::attribute(std::uint32_t structure, const std::string& attribute_name) const {
   for (const auto& [key, value] : structures[structure].attributes)
@@ -85,15 +96,18 @@ void check_plant(const Plant& plant) {
     if (s.type >= plant.types.size()) throw InputError(where, name + " with type number " + std::to_string(s.type), "a listed type");
     if (!finite(s.frame)) throw InputError(where, name + " with a frame that is not finite", "finite numbers");
     for (const auto& a : s.attributes)
-      if (a.first >= plant.attribute_names.size()) throw InputError(where, name + " with attribute number " + std::to_string(a.first), "a listed attribute");
+      if (a.first >= plant.attribute_names.size())
+        throw InputError(where, name + " with attribute number " + std::to_string(a.first), "a listed attribute");
   }
   for (const auto& mesh : plant.meshes) check_mesh(mesh, where);
   for (std::size_t i = 0; i < plant.shapes.size(); ++i) {
     const auto& s = plant.shapes[i];
     const std::string name = "shape " + std::to_string(i);
-    if (s.structure >= plant.structures.size()) throw InputError(where, name + " of structure " + std::to_string(s.structure), "a listed structure");
+    if (s.structure >= plant.structures.size())
+      throw InputError(where, name + " of structure " + std::to_string(s.structure), "a listed structure");
     if (s.mesh >= plant.meshes.size()) throw InputError(where, name + " with mesh " + std::to_string(s.mesh), "a listed mesh");
-    if (s.material >= plant.materials.size()) throw InputError(where, name + " with material number " + std::to_string(s.material), "a listed material");
+    if (s.material >= plant.materials.size())
+      throw InputError(where, name + " with material number " + std::to_string(s.material), "a listed material");
     if (std::uint64_t{s.first_triangle} + s.triangle_count > plant.meshes[s.mesh].triangles.size())
       throw InputError(where, name + " with triangles up to " + std::to_string(std::uint64_t{s.first_triangle} + s.triangle_count),
                        "at most the mesh's " + std::to_string(plant.meshes[s.mesh].triangles.size()));
