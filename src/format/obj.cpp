@@ -48,7 +48,7 @@ class ObjReader {
       else if (key == "o")
         open_object(words.rest());
       else if (key == "usemtl")
-        material_ = plant_.material_index(std::string(words.rest()));
+        material_ = material_index_(std::string(words.rest()));
       else if (key == "mtllib")
         check_inside(words.rest());
       if (mesh_.vertices.size() >= none) fail("more than 4,294,967,294 vertices", "fewer");
@@ -164,6 +164,7 @@ class ObjReader {
   const std::string& file_;
   long number_ = 0;
   Plant plant_ = empty_plant(std::filesystem::path(file_).stem().string(), file_);
+  NameIndex material_index_{plant_.materials};
   Mesh mesh_;
   std::vector<std::uint32_t> owner_, materials_, corners_;
   std::vector<std::pair<long, std::int64_t>> ahead_;
@@ -171,7 +172,7 @@ class ObjReader {
   std::unordered_map<std::string, std::uint32_t> object_index_, part_index_;
   std::vector<Part> parts_;
   std::string group_;
-  std::uint32_t object_ = none, part_ = none, material_ = plant_.material_index("");
+  std::uint32_t object_ = none, part_ = none, material_ = material_index_("");
   bool named_ = false;
 };
 

@@ -18,7 +18,6 @@
 
 #include <format/text.hpp>
 #include <sunfleck/core/error.hpp>
-#include <sunfleck/plant/build.hpp>
 
 namespace sunfleck {
 
@@ -228,7 +227,7 @@ class OpfReader {
         const auto named = material_names_.find(id);
         material = named == material_names_.end() ? fmt::format("material_{}", id) : named->second;
       }
-      if (!shapes_.emplace(id_of(node, "Id"), OpfShape{mesh->second, plant_.material_index(material)}).second)
+      if (!shapes_.emplace(id_of(node, "Id"), OpfShape{mesh->second, material_index_(material)}).second)
         fail(node, fmt::format("a second shape with Id {}", id_of(node, "Id")), "every Id once");
     }
   }
@@ -242,7 +241,10 @@ class OpfReader {
       open.pop_back();
       const auto class_name = node.attribute("class");
       if (!class_name || !*class_name.value()) fail(node, "no class", "class=\"name\"");
-      const std::uint32_t structure = add_structure(plant_, parent, class_name.value(), {});
+      const auto structure = static_cast<std::uint32_t>(plant_.structures.size());
+      plant_.structures.emplace_back();
+      plant_.structures[structure].parent = parent;
+      plant_.structures[structure].type = type_index_(class_name.value());
       if (parent != no_parent) plant_.structures[structure].frame = plant_.structures[parent].frame;
       add_own_attributes(node, structure);
       children.clear();
@@ -267,7 +269,7 @@ class OpfReader {
     for (const auto key : {"scale", "id"})
       if (node.attribute(key)) {
         const std::int64_t value = id_of(node, key);
-        attributes.emplace_back(plant_.attribute_index(key), value);
+        attributes.emplace_back(attribute_index_(key), value);
         if (key[0] == 'i') name += fmt::format("_{}", value);
       }
   }
@@ -300,7 +302,7 @@ class OpfReader {
            : kind == Kind::integer ? "a whole number (class Integer in attributeBDD)"
                                    : "a number (its class in attributeBDD)");
     }
-    plant_.structures[structure].attributes.emplace_back(plant_.attribute_index(name), std::move(value));
+    plant_.structures[structure].attributes.emplace_back(attribute_index_(name), std::move(value));
   }
 
   void add_geometry(pugi::xml_node geometry, std::uint32_t structure) {
@@ -372,6 +374,7 @@ class OpfReader {
   std::vector<std::size_t> line_ends_;
   Plant plant_ = {
       .name = {}, .file = file_, .types = {}, .attribute_names = {}, .materials = {}, .structures = {}, .meshes = {}, .shapes = {}};
+  NameIndex type_index_{plant_.types}, attribute_index_{plant_.attribute_names}, material_index_{plant_.materials};
   std::unordered_map<std::int64_t, OpfMesh> meshes_;
   std::unordered_map<std::int64_t, OpfShape> shapes_;
   std::unordered_map<std::int64_t, std::string> material_names_;

@@ -4,7 +4,6 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <unordered_map>
 #include <variant>
 
 #include <unistd.h>
@@ -12,6 +11,7 @@
 #include <fmt/format.h>
 
 #include <format/plant_h5.hpp>
+#include <format/text.hpp>
 #include <sunfleck/core/error.hpp>
 #include <sunfleck/core/h5.hpp>
 
@@ -20,21 +20,6 @@ namespace sunfleck {
 namespace {
 
 using namespace plant_h5;
-
-/// Distinct strings in the order of their first use.
-class StringTable {
- public:
-  std::uint32_t row(const std::string& text) {
-    const auto [at, fresh] = index_.try_emplace(text, static_cast<std::uint32_t>(rows_.size()));
-    if (fresh) rows_.push_back(text);
-    return at->second;
-  }
-  const std::vector<std::string>& rows() const { return rows_; }
-
- private:
-  std::unordered_map<std::string, std::uint32_t> index_;
-  std::vector<std::string> rows_;
-};
 
 /// Packs a plant as an HDF5 file in memory: HDF5 may hang or crash at exit if a disk fills up under it.
 class PlantPacker {
@@ -66,8 +51,8 @@ class PlantPacker {
     const h5::Id links(H5Pcreate(H5P_LINK_CREATE));
     H5Pset_create_intermediate_group(links.get(), 1);
     const h5::Id creation(H5Pcreate(H5P_DATASET_CREATE));
-    H5Pset_obj_track_times(creation.get(), false);  // the same plant gives the same bytes
-    if (size[0] > 0) {
+    H5Pset_obj_track_times(creation.get(), false);                          // the same plant gives the same bytes
+    if (constexpr hsize_t small = 4096; size[0] * bytes_per_row > small) {  // below, chunks cost more than they save
       std::vector<hsize_t> chunk = size;
       chunk[0] = std::clamp<hsize_t>((hsize_t{1} << 20) / std::max<hsize_t>(bytes_per_row, 1), 1, size[0]);
       H5Pset_chunk(creation.get(), static_cast<int>(chunk.size()), chunk.data());
@@ -126,7 +111,8 @@ class PlantPacker {
   }
 
   void write_structures(const Plant& plant) {
-    StringTable names, texts;
+    std::vector<std::string> names, texts;  // each distinct one once
+    NameIndex name_row(names), text_row(texts);
     std::vector<std::uint32_t> parent, type, name, owner, key;
     std::vector<std::uint8_t> kind;
     std::vector<std::int64_t> wholes;
@@ -136,7 +122,7 @@ class PlantPacker {
       const Structure& s = plant.structures[i];
       parent.push_back(s.parent);
       type.push_back(s.type);
-      name.push_back(names.row(s.name));
+      name.push_back(name_row(s.name));
       frame.push_back(matrix_of(s.frame));
       for (const auto& [k, value] : s.attributes) {
         owner.push_back(static_cast<std::uint32_t>(i));
@@ -147,12 +133,12 @@ class PlantPacker {
         std::int64_t whole_value = 0;
         if (const auto* b = std::get_if<bool>(&value)) whole_value = *b;
         if (const auto* i64 = std::get_if<std::int64_t>(&value)) whole_value = *i64;
-        if (const auto* string = std::get_if<std::string>(&value)) whole_value = texts.row(*string);
+        if (const auto* string = std::get_if<std::string>(&value)) whole_value = text_row(*string);
         wholes.push_back(whole_value);
       }
     }
-    write_strings("/names/structure", names.rows());
-    write_strings("/names/text", texts.rows());
+    write_strings("/names/structure", names);
+    write_strings("/names/text", texts);
     write_values("/structures/parent", parent);
     write_values("/structures/type", type);
     write_values("/structures/name", name);

@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <unordered_map>
+#include <vector>
 
 #include <sunfleck/core/vector.hpp>
 
@@ -44,6 +46,22 @@ class Words {
 
  private:
   std::string_view rest_;
+};
+
+/// Rows of a list of names (empty so far) by name, appended if new: Plant's own look-ups are linear, which a file with 10^5 names would
+/// feel.
+class NameIndex {
+ public:
+  explicit NameIndex(std::vector<std::string>& names) : names_(names) {}
+  std::uint32_t operator()(const std::string& name) {
+    const auto [at, fresh] = index_.try_emplace(name, static_cast<std::uint32_t>(names_.size()));
+    if (fresh) names_.push_back(name);
+    return at->second;
+  }
+
+ private:
+  std::vector<std::string>& names_;
+  std::unordered_map<std::string, std::uint32_t> index_;
 };
 
 /// The whole word as a number, rounded correctly; "nan" and "inf" are numbers here. False if it is none.
