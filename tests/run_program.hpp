@@ -9,8 +9,15 @@ struct ProgramRun {
   std::string out, err;
 };
 
-/// Runs build/.../sunfleck with the arguments given; `kill_after_s` > 0 sends it `signal` after so many seconds.
-ProgramRun run_sunfleck(const std::vector<std::string>& arguments, double kill_after_s = 0.0, int signal = 15);
+/// What happens to the program while it runs.
+struct ProgramFate {
+  std::string stop_at;         ///< not empty: sends it `signal` once standard error holds this text
+  int signal = 15;             ///< SIGTERM
+  std::size_t disk_bytes = 0;  ///< > 0: no file may grow beyond this, as on a full disk
+};
+
+/// Runs build/.../sunfleck with the arguments given.
+ProgramRun run_sunfleck(const std::vector<std::string>& arguments, const ProgramFate& fate = {});
 
 /// A folder of its own under the system's temporary folder; removed with all it holds at the end.
 class TemporaryFolder {

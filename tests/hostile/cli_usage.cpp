@@ -9,13 +9,6 @@
 
 namespace {
 
-using Strings = std::vector<std::string>;
-
-struct Misuse {
-  Strings arguments;
-  std::string message;  ///< the whole of standard error
-};
-
 bool contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }

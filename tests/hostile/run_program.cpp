@@ -4,6 +4,7 @@
 #include <cstdlib>
 
 #include <fcntl.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -17,7 +18,7 @@
 
 namespace fs = std::filesystem;
 
-ProgramRun run_sunfleck(const std::vector<std::string>& arguments, double kill_after_s, int signal) {
+ProgramRun run_sunfleck(const std::vector<std::string>& arguments, const ProgramFate& fate) {
   const TemporaryFolder folder;
   const std::string out = folder.path("out"), err = folder.path("err");
   std::vector<std::string> words{SUNFLECK_PROGRAM};
@@ -32,15 +33,24 @@ ProgramRun run_sunfleck(const std::vector<std::string>& arguments, double kill_a
     dup2(open("/dev/null", O_RDONLY), STDIN_FILENO);
     dup2(open(out.c_str(), O_WRONLY | O_CREAT, 0600), STDOUT_FILENO);
     dup2(open(err.c_str(), O_WRONLY | O_CREAT, 0600), STDERR_FILENO);
+    if (fate.disk_bytes > 0) {
+      const rlimit limit{fate.disk_bytes, fate.disk_bytes};
+      setrlimit(RLIMIT_FSIZE, &limit);
+      signal(SIGXFSZ, SIG_IGN);  // writes fail with EFBIG instead
+    }
     execv(SUNFLECK_PROGRAM, argv.data());
     _exit(127);
   }
-  if (kill_after_s > 0.0) {
-    std::this_thread::sleep_for(std::chrono::duration<double>(kill_after_s));
-    kill(child, signal);
-  }
   int status = 0;
-  waitpid(child, &status, 0);
+  bool ended = false;
+  while (!fate.stop_at.empty() && !ended && text_of(err).find(fate.stop_at) == std::string::npos) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    ended = waitpid(child, &status, WNOHANG) == child;
+  }
+  if (!ended) {
+    if (!fate.stop_at.empty()) kill(child, fate.signal);
+    waitpid(child, &status, 0);
+  }
   ProgramRun run;
   run.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   run.out = text_of(out);
