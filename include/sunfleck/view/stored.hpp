@@ -1,0 +1,40 @@
+// What pictures need of a result file.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <sunfleck/result/result_reader.hpp>
+#include <sunfleck/view/picture.hpp>
+
+namespace sunfleck {
+
+/// The scene of a result as it was solved: corners, area, optics, organs, materials, period. Without `ground`, plants only.
+/// Works for files that keep organs only. Throws InputError where the file holds no geometry, or nothing to draw is left.
+FacetScene stored_scene(const Result& result, bool ground = true);
+
+/// Row of a state by its name, or by its number counted from 1; the first where none is given. Throws UsageError with the nearest name.
+std::size_t state_row(const Result& result, const std::optional<std::string>& state);
+/// Row of a band by its name; where none is given that of PAR, else the first. Throws UsageError with the nearest name.
+std::size_t band_row(const Result& result, const std::optional<std::string>& band);
+
+/// Light on the facets of stored_scene(); where the file keeps organs only, every facet has its organ's mean. Throws InputError
+/// where it keeps neither.
+FacetLight stored_light(const Result& result, const FacetScene& scene, std::size_t state);
+
+/// What draw_map() can show: see docs/render.md.
+const std::vector<std::string>& quantity_names();
+
+struct MapChoice {
+  std::string quantity = "absorbed";
+  std::size_t band = 0, state = 0;
+  ColorMap map = ColorMap::viridis;
+  bool logarithmic = false;
+  std::vector<double> range;  ///< low, high; empty = from the plants' facets (the ground's where there are no plants)
+};
+/// Values of a quantity with scale, title and unit. Throws UsageError for an unknown quantity (with the nearest name) or a
+/// range that is empty, not finite, or not positive where logarithmic; InputError where the file does not keep it.
+FacetMap stored_map(const Result& result, const FacetScene& scene, const MapChoice& choice);
+
+}  // namespace sunfleck
