@@ -23,7 +23,7 @@ class NaturalLight {
   NaturalLight(const FacetScene& scene, const FacetLight& light, const RayScene& rays) : scene_(scene), rays_(rays) {
     const std::size_t n = scene.size(), all = light.bands.size();
     if (light.irradiance.size() != 2 * n * all || scene.materials.empty()) throw Error("draw_natural: irradiance does not match the scene");
-    const ColourBands chosen = colour_bands(light.bands);
+    const ColourBands chosen = light.band ? ColourBands{{*light.band, *light.band, *light.band}, false} : colour_bands(light.bands);
     const std::vector<std::size_t> rows = chosen.measured ? std::vector<std::size_t>(chosen.rgb.begin(), chosen.rgb.end()) : std::vector{chosen.rgb[0]};
     b_ = rows.size();
     bands_ = chosen.measured ? ColourBands{{0, 1, 2}, true} : ColourBands{};

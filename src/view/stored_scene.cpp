@@ -93,7 +93,8 @@ std::size_t band_row(const Result& result, const std::optional<std::string>& ban
 
 FacetLight stored_light(const Result& result, const FacetScene& scene, std::size_t state) {
   const std::size_t n = scene.size(), b = result.bands().size();
-  FacetLight light{.bands = result.bands(), .irradiance = {}, .sunlit = {}, .sun = result.states().at(state).sun};
+  FacetLight light;
+  light.bands = result.bands(), light.sun = result.states().at(state).sun;
   if (result.has("facets/irradiance")) {
     light.irradiance = result.state_rows<float>("facets/irradiance", state, 0, n);
     if (result.has("facets/sunlit")) light.sunlit = result.state_rows<float>("facets/sunlit", state, 0, n);

@@ -48,6 +48,9 @@ struct RenderOptions {
   std::vector<double> range;            ///< low, high; empty = from the data
   int width = 1200, height = 900, samples = 9;
   bool logarithmic = false, ground = true;
+  bool orthographic = false;            ///< parallel projection
+  bool map_ground = false;              ///< a map colours the ground by its values too
+  bool infinite = false;                ///< a periodic scene is drawn with its repetition
 };
 int verb_render(const RenderOptions& options, Progress& progress);
 

@@ -18,6 +18,7 @@ namespace sunfleck {
 /// Light on the facets of a scene in one lighting state; n facets, b bands.
 struct FacetLight {
   std::vector<std::string> bands;      ///< [b]
+  std::optional<std::size_t> band = std::nullopt;  ///< the one band to draw with a guessed hue; none: colour_bands()
   std::vector<float> irradiance;       ///< [n][2][b] front, back [W m^-2]
   std::vector<float> sunlit;           ///< [n][2] fraction of the side that the sun reaches; may be empty
   std::optional<Sun> sun;              ///< the state's sun; its beam is drawn sharp where `sunlit` is there too
