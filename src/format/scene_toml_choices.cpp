@@ -17,11 +17,8 @@ void read_output(const TomlValue& root, Scene& scene) {
   if (!output) return;
   if (const auto facets = output->get("facets")) scene.output.facets = facets->flag();
   if (const auto fields = output->get("fields")) {
-    static const std::vector<std::string> known{"facets/irradiance", "facets/absorbed", "facets/sunlit",     "facets/area",
-                                                "facets/centroid",   "facets/organ",    "organs/irradiance", "organs/absorbed",
-                                                "organs/sunlit",     "organs/area"};
     for (const auto& field : fields->items()) {
-      scene.output.fields.push_back(field.one_of(known));
+      scene.output.fields.push_back(field.one_of(output_fields()));
       if (!scene.output.facets && scene.output.fields.back().rfind("facets/", 0) == 0)
         field.fail("a dataset of organs, since facets = false keeps no others");
     }

@@ -17,13 +17,6 @@ namespace sunfleck {
 using h5::Id;
 using h5::RowDataset;
 
-const std::vector<std::string>& output_fields() {
-  static const std::vector<std::string> names{"facets/irradiance", "facets/absorbed", "facets/sunlit",   "facets/area",      "facets/centroid",
-                                              "facets/organ",      "organs/irradiance", "organs/absorbed", "organs/sunlit",    "variance/facets",
-                                              "variance/organs",   "geometry"};
-  return names;
-}
-
 namespace {
 
 std::vector<std::string> checked_fields(const OutputChoice& output, const Scene& scene) {

@@ -83,7 +83,8 @@ TEST_CASE("Wrong types say what was found and what was expected", "[hostile][sce
   CHECK(message(light + "[output]\nfacets = 1\n") == "scene.toml:6: output.facets: found 1; expected true or false");
   CHECK(message(light + "[output]\nfields = [\"facets/absorbd\"]\n") ==
         "scene.toml:6: output.fields[0]: found \"facets/absorbd\"; expected one of facets/irradiance, facets/absorbed, facets/sunlit, "
-        "facets/area, facets/centroid, facets/organ, organs/irradiance, organs/absorbed, organs/sunlit, organs/area; did you mean "
+        "facets/area, facets/centroid, facets/organ, organs/irradiance, organs/absorbed, organs/sunlit, organs/area, variance/facets, "
+        "variance/organs, geometry; did you mean "
         "\"facets/absorbed\"?");
   CHECK(message(light + "[output]\nfacets = false\nfields = [\"facets/absorbed\"]\n") ==
         "scene.toml:7: output.fields[0]: found \"facets/absorbed\"; expected a dataset of organs, since facets = false keeps no others");

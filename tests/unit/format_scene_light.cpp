@@ -137,10 +137,10 @@ TEST_CASE("[output] and [solve] are kept as chosen", "[format][scene]") {
   CHECK(plain.output.fields.empty());
   CHECK_FALSE(plain.solve.quality);
   const Scene chosen = read(band + sky +
-                            "[output]\nfacets = false\nfields = [\"organs/absorbed\", \"organs/area\"]\n"
+                            "[output]\nfacets = false\nfields = [\"organs/absorbed\", \"organs/sunlit\"]\n"
                             "[solve]\nquality = \"fine\"\nmethod = \"reference\"\nseed = 7\ncertificate = false\nsamples = 256\n");
   CHECK_FALSE(chosen.output.facets);
-  CHECK(chosen.output.fields == std::vector<std::string>{"organs/absorbed", "organs/area"});
+  CHECK(chosen.output.fields == std::vector<std::string>{"organs/absorbed", "organs/sunlit"});
   CHECK(chosen.solve.quality == Quality::fine);
   CHECK(chosen.solve.method == "reference");
   CHECK(chosen.solve.seed == 7u);

@@ -23,9 +23,6 @@ struct OrganTotals {
   double absorbed_power(std::size_t state, std::size_t organ, std::size_t band) const { return absorbed[(state * organs + organ) * bands + band]; }
 };
 
-/// Names that [output] fields may list: "facets/irradiance", ... Rows of names and places are always kept.
-const std::vector<std::string>& output_fields();
-
 /// Absorbed per one-sided area is (1 - rho_f - tau) E_f + (1 - rho_b - tau) E_b [W m^-2]; organs take area-weighted sums in double.
 ///
 /// The file is complete or absent: it grows under a temporary name in the same folder, and finish() renames it. A writer destroyed

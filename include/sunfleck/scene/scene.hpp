@@ -65,6 +65,9 @@ struct OutputChoice {
   std::vector<std::string> fields;   ///< dataset names as in the result ("facets/irradiance"); empty = all
 };
 
+/// Names that [output] fields may list: "facets/irradiance", ... Rows of names and places are always kept.
+const std::vector<std::string>& output_fields();
+
 enum class Quality { draft, standard, fine };
 
 /// The scene's own [solve] table; the command line takes precedence.
