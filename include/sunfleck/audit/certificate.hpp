@@ -1,0 +1,38 @@
+// The certificate: some organs of a solved scene checked by path tracing.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <sunfleck/core/progress.hpp>
+#include <sunfleck/result/certificate.hpp>
+#include <sunfleck/result/result_writer.hpp>
+#include <sunfleck/scene/facets.hpp>
+#include <sunfleck/scene/scene.hpp>
+#include <sunfleck/scene/solution.hpp>
+
+namespace sunfleck {
+
+struct CertificateSettings {
+  std::uint64_t seed = 1;  ///< of the solve; the certificate's numbers are independent of those that solve and reference draw from it
+  int threads = 0;         ///< 0 = all cores
+  std::uint32_t organs = 320;       ///< to check; all, where a scene has no more
+  std::uint64_t rays = 1'200'000;   ///< to spend, about
+};
+
+/// Checks organs of plants, drawn with a probability proportional to their area (systematic sampling in scene order; organs larger than
+/// the sampling step are taken for sure), by paths from points uniform over each organ's area. Estimates, per band, over all states
+/// together (x solved, r reference, per area; w area; the Error definition of docs/formats-result.md):
+///   rmse^2 = max(0, sum w ((x - r)^2 - var r) / sum w), bias = sum w (x - r) / sum w, over the mean of r,
+/// where the mean of r is the mean of x over *all* organs less the bias, which is far less noisy than that of the checked ones.
+/// The interval and the bias's standard error hold both the choice of organs and the noise of the paths (see error_interval.hpp).
+/// Where plants absorb less than 1e-6 of the incident light, irradiance (front + back) takes the place of absorbed in the measures.
+///
+/// Work is counted in rays, not seconds, so that every machine gives the same certificate: 1.2 million rays, some 4 more per cent
+/// to find out what a path costs, and the tree of rays (about a microsecond a facet): about one second on one core and less than
+/// 2 s with a million facets on two, where solving takes far longer. Fewer organs are checked (at least 64) where 16 samples of each
+/// would cost more. Same bits for any number of threads. A scene without plant organs yields measures of zero and no organs.
+Certificate certify(const Scene& scene, const FacetScene& facets, const OrganTotals& solved, const std::vector<std::vector<Balance>>& balance,
+                    const CertificateSettings& settings, Progress& progress);
+
+}  // namespace sunfleck
