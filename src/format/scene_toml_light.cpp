@@ -148,8 +148,8 @@ LightState read_state(const TomlValue& owner, Scene& scene) {
     if (sun.direction.z > 0)
       state.sun = std::move(sun);
     else
-      scene.notes.push_back(
-          fmt::format("{}: the sun is {:.2f} degrees below the horizon: no sun", sun_table->where(), -std::asin(sun.direction.z) / degree));
+      scene.notes.push_back(fmt::format("{}: the sun is {:.2f} degrees below the horizon: no sun", sun_table->where(),
+                                        0.0 - std::asin(sun.direction.z) / degree));
   }
   if (sky_table) state.sky = read_sky(*sky_table, scene, position, shares);
   return state;

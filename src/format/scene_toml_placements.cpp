@@ -126,7 +126,8 @@ std::vector<Placement> read_grid(const TomlValue& grid) {
   const auto counts = count.is_array() ? count.items() : std::vector<TomlValue>{};
   if (counts.size() != 2) count.fail("an array of 2 whole numbers: copies along x, copies along y");
   const auto columns = counts[0].integer(1, 1'000'000), rows = counts[1].integer(1, 1'000'000);
-  if (columns * rows > 100'000'000) count.fail(fmt::format("{} copies", columns * rows), "at most 100000000");
+  if (columns * rows > 10'000'000)
+    count.fail(fmt::format("{} copies", columns * rows), "at most 10000000 in one grid (a group may hold many)");
   const auto turn = grid.get("turn"), seed = grid.get("seed");
   const bool random = turn && turn->is_text();
   if (random && turn->text() != "random") turn->fail("a number of degrees, or \"random\"");

@@ -23,6 +23,7 @@ class Check {
     if (scene_.ground) ground(*scene_.ground);
     plants();
     groups();
+    group_depth();
   }
 
  private:
@@ -160,6 +161,23 @@ class Check {
     std::string text;
     for (const auto g : cycle) text += (text.empty() ? "\"" : " -> \"") + scene_.groups[g].name + '"';
     fail(fmt::format("group[{}]", cycle.front()), "a group that holds itself: " + text, "groups without a circle");
+  }
+
+  /// Groups are walked by recursion: a chain of very many would overflow the stack.
+  void group_depth() const {
+    constexpr int deepest = 1000;
+    std::vector<int> height(scene_.groups.size(), 1);
+    for (bool changed = true; changed;) {
+      changed = false;
+      for (std::size_t g = 0; g < scene_.groups.size(); ++g)
+        for (const auto& member : scene_.groups[g].members)
+          if (member.is_group && height[g] <= height[member.index]) {
+            height[g] = height[member.index] + 1;
+            changed = true;
+            if (height[g] > deepest)
+              fail(fmt::format("group[{}]", g), fmt::format("more than {} groups inside each other", deepest), "fewer levels");
+          }
+    }
   }
 
   static constexpr float rounding = 1e-6f;  ///< of values such as 0.45 + 0.55 in single precision

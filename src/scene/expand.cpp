@@ -1,6 +1,7 @@
 #include <sunfleck/scene/facets.hpp>
 
 #include <limits>
+#include <new>
 #include <unordered_map>
 
 #include <sunfleck/core/error.hpp>
@@ -62,13 +63,18 @@ class Expansion {
       copies += copies_of[p];
     }
     if (facets > limit) throw InputError(location(scene_.file), "more than 2^31 facets", "fewer copies, or smaller plants");
-    out_.corners.reserve(facets);
-    out_.area.reserve(facets);
-    out_.optics.reserve(facets);
-    out_.organ.reserve(facets);
-    out_.shapes.reserve(shapes);
-    out_.copies.reserve(copies);
-    out_.copy_plant.reserve(copies);
+    try {
+      out_.corners.reserve(facets);
+      out_.area.reserve(facets);
+      out_.optics.reserve(facets);
+      out_.organ.reserve(facets);
+      out_.shapes.reserve(shapes);
+      out_.copies.reserve(copies);
+      out_.copy_plant.reserve(copies);
+    } catch (const std::bad_alloc&) {
+      throw InputError(location(scene_.file), std::to_string(facets) + " facets, for which there is not enough memory",
+                       "fewer copies, or smaller plants");
+    }
   }
 
   static std::string label(const std::string& name, std::size_t i) { return name + "[" + std::to_string(i) + "]"; }

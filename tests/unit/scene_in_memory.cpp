@@ -134,4 +134,10 @@ TEST_CASE("Groups in memory may not hold themselves or what is not there", "[sce
         "scene in memory: group[1]: found a group that holds itself: \"row\" -> \"stand\" -> \"row\"; expected groups without a circle");
   scene.groups[2].members = {{true, 7, placed({})}};
   CHECK(refusal(scene) == "scene in memory: group[2].place[0]: found group number 7; expected a number below 3");
+
+  // A chain too long to walk.
+  scene.groups.assign(2000, scene.groups[0]);
+  for (std::uint32_t g = 0; g + 1 < 2000; ++g) scene.groups[g].members = {{true, g + 1, placed({})}};
+  CHECK(refusal(scene) ==
+        "scene in memory: group[0]: found more than 1000 groups inside each other; expected fewer levels");
 }
