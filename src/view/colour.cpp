@@ -17,6 +17,7 @@ struct Tint {
 Tint tint_of(Surface surface) {
   switch (surface) {
     case Surface::leaf: return {{0.88f, 1.76f, 0.36f}, {1.02f, 1.86f, 0.12f}};
+    case Surface::stem: return {{1.02f, 1.56f, 0.42f}, {1.08f, 1.72f, 0.20f}};
     case Surface::bark: return {{1.26f, 0.99f, 0.75f}, {1.26f, 0.99f, 0.75f}};
     case Surface::ear: return {{1.35f, 1.15f, 0.50f}, {1.40f, 1.25f, 0.35f}};
     case Surface::flower: return {{1.30f, 0.75f, 0.95f}, {1.35f, 0.70f, 0.95f}};
@@ -49,8 +50,8 @@ bool guess(const std::string& text, Surface& out) {
   if (has_any(text, {"flower", "petal", "corolla", "blossom"})) return out = Surface::flower, true;
   if (has_any(text, {"spike", "fruit", "grain", "panicle", "tassel", "seed"}) || has_word(text, "ear") || has_word(text, "cob"))
     return out = Surface::ear, true;
-  if (has_any(text, {"stem", "trunk", "bark", "branch", "wood", "metamer", "internode", "twig", "bole", "axis", "petiole", "rachis", "peduncle"}))
-    return out = Surface::bark, true;
+  if (has_any(text, {"stem", "culm", "sheath", "petiole", "rachis", "peduncle", "stalk"})) return out = Surface::stem, true;
+  if (has_any(text, {"trunk", "bark", "branch", "wood", "metamer", "internode", "twig", "bole", "axis"})) return out = Surface::bark, true;
   return false;
 }
 

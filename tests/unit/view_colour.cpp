@@ -29,6 +29,8 @@ TEST_CASE("surfaces are guessed from optics first, then from the organ's type", 
   REQUIRE(surface_of("ground", "ground") == Surface::soil);
   REQUIRE(surface_of("", "linear") == Surface::leaf);
   REQUIRE(surface_of("ear_2", "x") == Surface::ear);
+  REQUIRE(surface_of("stem", "wheat") == Surface::stem);
+  REQUIRE(surface_of("stem", "bark") == Surface::bark);
 }
 
 TEST_CASE("facet colour is the light that leaves the side", "[view]") {
@@ -47,7 +49,7 @@ TEST_CASE("facet colour is the light that leaves the side", "[view]") {
 TEST_CASE("a guessed hue keeps the band's power: the channels' mean is the exitance", "[view]") {
   const Optics optics{"x", {0.1f}, {0.2f}, {0.05f}};
   const float irradiance[] = {100, 10};
-  for (const auto surface : {Surface::leaf, Surface::bark, Surface::ear, Surface::flower, Surface::soil}) {
+  for (const auto surface : {Surface::leaf, Surface::stem, Surface::bark, Surface::ear, Surface::flower, Surface::soil}) {
     const Rgb c = facet_colour({}, optics, surface, irradiance, Side::front);
     REQUIRE((c.r + c.g + c.b) / 3 == Approx(0.1 * 100 + 0.05 * 10).epsilon(1e-5));  // tints are written with two decimals, mean exactly 1
   }

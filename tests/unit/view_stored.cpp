@@ -1,0 +1,132 @@
+#include <catch2/catch.hpp>
+
+#include <sunfleck/core/error.hpp>
+#include <sunfleck/view/stored.hpp>
+
+#include "result_scene.hpp"
+
+using namespace sunfleck;
+using namespace sunfleck::test;
+
+namespace {
+
+/// A result of small_scene() as a solver would leave it.
+std::string stored(const Folder& folder, const Scene& scene, const FacetScene& facets, const char* name = "r.h5") {
+  const Values values(facets);
+  ResultWriter writer(folder / name, scene, facets, scene.output, "0.1.0", "flat");
+  values.send(writer, 1000);
+  writer.finish(small_report());
+  return folder / name;
+}
+
+}  // namespace
+
+TEST_CASE("a stored scene is the scene that was solved", "[view][result]") {
+  const Folder folder;
+  const Scene scene = small_scene();
+  const FacetScene solved = expand(scene);
+  const Result result(stored(folder, scene, solved));
+  const FacetScene read = stored_scene(result);
+  REQUIRE(read.size() == solved.size());
+  REQUIRE(read.plant_facets == solved.plant_facets);
+  for (std::size_t f = 0; f < solved.size(); ++f) {
+    REQUIRE(read.corners[f] == solved.corners[f]);
+    REQUIRE(read.area[f] == solved.area[f]);
+    REQUIRE(read.organ[f] == solved.organ[f]);
+    REQUIRE(read.materials[read.optics[f]].name == solved.materials[solved.optics[f]].name);
+  }
+  REQUIRE(stored_scene(result, false).size() == solved.plant_facets);
+}
+
+TEST_CASE("a file that keeps organs only still tells which facet belongs to which organ", "[view][result]") {
+  const Folder folder;
+  Scene scene = small_scene();
+  scene.output.facets = false;
+  const FacetScene solved = expand(scene);
+  const Result result(stored(folder, scene, solved));
+  const FacetScene read = stored_scene(result);
+  REQUIRE(read.organ == solved.organ);
+  const FacetMap map = stored_map(result, read, {});
+  const auto power = result.state_rows<float>("organs/absorbed", 0, 0, result.organ_count());
+  const auto area = result.all<float>("organs/area");
+  const std::size_t b = result.bands().size(), organ = read.organ[2];
+  REQUIRE(map.title.at(1) == "organ means");
+  REQUIRE(map.values[2] == Approx(power[organ * b] / area[organ]).epsilon(1e-6));  // one division in float
+  const FacetLight light = stored_light(result, read, 0);
+  REQUIRE(light.irradiance.size() == 2 * b * read.size());
+  REQUIRE(light.sunlit.empty());
+}
+
+TEST_CASE("maps hold the values of the file, with title, unit and scale", "[view][result]") {
+  const Folder folder;
+  const Scene scene = small_scene();
+  const FacetScene solved = expand(scene);
+  const Result result(stored(folder, scene, solved));
+  const FacetScene read = stored_scene(result);
+  const std::size_t n = read.size(), b = result.bands().size(), state = result.states().size() - 1, band = b - 1;
+  const auto irradiance = result.state_rows<float>("facets/irradiance", state, 0, n);
+  const auto absorbed = result.state_rows<float>("facets/absorbed", state, 0, n);
+  const auto map = [&](const char* quantity) {
+    MapChoice choice;
+    choice.quantity = quantity, choice.band = band, choice.state = state;
+    return stored_map(result, read, choice);
+  };
+  const FacetMap seen = map("irradiance"), front = map("irradiance_front"), back = map("irradiance_back"), taken = map("absorbed");
+  REQUIRE(seen.sides);
+  REQUIRE_FALSE(front.sides);
+  REQUIRE(taken.title.at(0) == "absorbed " + result.bands()[band]);
+  for (std::size_t f = 0; f < n; ++f) {
+    REQUIRE(front.values[f] == irradiance[2 * b * f + band]);
+    REQUIRE(back.values[f] == irradiance[2 * b * f + b + band]);
+    REQUIRE(seen.values[2 * f] == front.values[f]);
+    REQUIRE(seen.values[2 * f + 1] == back.values[f]);
+    REQUIRE(taken.values[f] == absorbed[b * f + band]);
+  }
+  const FacetMap types = map("type");
+  for (std::size_t f = 0; f < n; ++f)
+    REQUIRE(types.names.at(static_cast<std::size_t>(types.values[f])) == solved.organs.types[solved.organs.type[solved.organ[f]]]);
+  for (const auto& quantity : quantity_names()) {
+    if (quantity == "colour") continue;
+    INFO(quantity);
+    const FacetMap any = map(quantity.c_str());
+    REQUIRE(any.values.size() == (any.sides ? 2 * n : n));
+    REQUIRE_FALSE(any.title.empty());
+    REQUIRE((!any.names.empty() || any.scale.high > any.scale.low));
+  }
+}
+
+TEST_CASE("names that the file does not hold are refused with the nearest one", "[view][result]") {
+  const Folder folder;
+  const Scene scene = small_scene();
+  const std::string file = stored(folder, scene, expand(scene));
+  const Result result(file);
+  const FacetScene read = stored_scene(result);
+  REQUIRE(band_row(result, result.bands().back()) == result.bands().size() - 1);
+  REQUIRE(state_row(result, "1") == 0);
+  REQUIRE(state_row(result, result.states().back().name) == result.states().size() - 1);
+  REQUIRE_THROWS_WITH(band_row(result, "PAT"), Catch::Matchers::StartsWith("--band: found 'PAT'; expected one of those in " + file + ": ") &&
+                                                   Catch::Matchers::EndsWith("(did you mean 'PAR'?)"));
+  REQUIRE_THROWS_WITH(state_row(result, "99"), Catch::Matchers::StartsWith("--state: found '99'; expected one of those in " + file + ": "));
+  MapChoice choice;
+  choice.quantity = "absorbd";
+  REQUIRE_THROWS_WITH(stored_map(result, read, choice), Catch::Matchers::EndsWith("(did you mean 'absorbed'?)"));
+  choice.quantity = "absorbed", choice.range = {5, 5};
+  REQUIRE_THROWS_WITH(stored_map(result, read, choice), "--range: found 5 5; expected two finite numbers, the lower first");
+  choice.range = {0, 5}, choice.logarithmic = true;
+  REQUIRE_THROWS_WITH(stored_map(result, read, choice), "--range: found 0 with --log; expected numbers above zero");
+}
+
+TEST_CASE("a file without the quantity asked for says so", "[view][result]") {
+  const Folder folder;
+  Scene scene = small_scene();
+  scene.output.fields = {"organs/absorbed", "geometry"};
+  const Result result(stored(folder, scene, expand(scene)));
+  const FacetScene read = stored_scene(result);
+  REQUIRE_THROWS_WITH(stored_light(result, read, 0), Catch::Matchers::EndsWith("expected irradiance of facets or organs; [output] of the scene left both out"));
+  MapChoice choice;
+  choice.quantity = "sunlit";
+  REQUIRE_THROWS_AS(stored_map(result, read, choice), InputError);
+  Scene bare = small_scene();
+  bare.output.fields = {"organs/absorbed"};
+  REQUIRE_THROWS_WITH(stored_scene(Result(stored(folder, bare, expand(bare), "bare.h5"))), Catch::Matchers::Contains("left them out"));
+}
