@@ -50,7 +50,7 @@ class ObjReader {
       else if (key == "usemtl")
         material_ = material_index_(std::string(words.rest()));
       else if (key == "mtllib")
-        check_inside(words.rest());
+        for (auto name = words.next(); !name.empty(); name = words.next()) check_inside(name);
       if (mesh_.vertices.size() >= none) fail("more than 4,294,967,294 vertices", "fewer");
     }
     for (const auto& [at, index] : ahead_)

@@ -35,6 +35,7 @@ TEST_CASE("Broken OBJ files are named with their line", "[format][obj]") {
   CHECK(message(three.c_str()) == "bad.obj: found no face; expected at least one triangle or polygon");
   CHECK(message("mtllib ../../secret.mtl\n") ==
         "bad.obj:1: mtllib: found \"../../secret.mtl\"; expected a file in the folder of the OBJ or below");
+  CHECK(message("mtllib a.mtl ../b.mtl\n") == "bad.obj:1: mtllib: found \"../b.mtl\"; expected a file in the folder of the OBJ or below");
   CHECK(message("mtllib /etc/passwd\n") == "bad.obj:1: mtllib: found \"/etc/passwd\"; expected a file in the folder of the OBJ or below");
 }
 
