@@ -16,6 +16,7 @@ namespace sunfleck {
 
 namespace {
 
+constexpr std::uint32_t sun_points = 8;  // a shadow ray is a tenth of a sample's cost, and direct sun most of its variance
 constexpr double least_absorbed = 1e-6;  // of the incident light; below it irradiance is compared
 
 struct Checked {
@@ -23,6 +24,11 @@ struct Checked {
   double share = 0;  ///< of the area of all organs of plants
   bool certain = false;
 };
+
+/// Rays become dearer as the tree outgrows the caches: about as the root of the number of facets.
+std::uint64_t rays_for(std::size_t facets) {
+  return static_cast<std::uint64_t>(2.0e6 * std::clamp(std::sqrt(1e5 / static_cast<double>(facets)), 0.3, 1.0));
+}
 
 /// Organs of plants drawn with a probability proportional to area; rising. All for sure if there are no more than `wanted`.
 std::vector<Checked> draw(const FacetScene& facets, const OrganTotals& solved, std::uint32_t wanted, double offset) {
@@ -90,7 +96,7 @@ Measured measure(const PathSampler& sampler, const SampleTarget& target, std::ui
   std::vector<SampleMeans> parts(reference_randomisations);
   Measured out;
   for (std::uint32_t r = 0; r < reference_randomisations; ++r) {
-    sampler.sample(target, r, count, parts[r]);
+    sampler.sample(target, r, count, sun_points, parts[r]);
     out.rays += parts[r].rays;
   }
   const auto fill = [&](std::vector<double>& mean, std::vector<double>& variance, auto value) {
@@ -180,7 +186,7 @@ Certificate certify(const Scene& scene, const FacetScene& facets, const OrganTot
     for (const auto c : cost) pilot_rays += c;
     out.rays += pilot_rays;
     const double per_pass = std::max(1.0, static_cast<double>(pilot_rays) / static_cast<double>(pilots));  // 16 samples of one organ
-    const double passes = static_cast<double>(settings.rays) / per_pass;
+    const double passes = static_cast<double>(settings.rays > 0 ? settings.rays : rays_for(facets.size())) / per_pass;
     if (passes < static_cast<double>(chosen.size())) {
       chosen = draw(facets, solved, std::min<std::uint32_t>(settings.organs, std::max(64u, static_cast<std::uint32_t>(passes))), offset);
       targets = targets_of(facets, chosen);

@@ -26,7 +26,7 @@ struct ErrorEstimate {
 /// *and* a low variance. So the upper end is q + z s + max(L, J), s the standard error of q, z = 2.1 (a little more than the normal 1.96,
 /// since s is itself estimated), L = (z s)^2 / 2 (q + s) the next term of a log-normal interval, J = (1 + 2 z^2) m3 / (6 s^2) Johnson's
 /// correction for the third moment m3 of the mean (Johnson 1978, J. Am. Stat. Assoc. 73(363), 536-544). The lower end is q - z s.
-/// Simulated coverage (tests/unit/audit_interval.cpp): 0.93 and more up to a kurtosis of 13, with 320 organs still 0.9 at 39.
+/// Simulated coverage (tests/unit/audit_interval.cpp): 0.93 and more up to a kurtosis of 13, and still 0.9 at 39.
 ErrorEstimate estimate_error(std::span<const OrganError> organs);
 
 }  // namespace sunfleck

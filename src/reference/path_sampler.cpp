@@ -70,6 +70,14 @@ struct PathSampler::Impl {
   void one_side(const Vec3& p, const Vec3& d, std::uint32_t facet, RandomStream& random, double* weight, double* sum, double* direct,
                 std::uint64_t& count) const;
 
+  double absorptance(std::uint32_t facet, bool on_front, std::size_t b) const {
+    const auto m = material(facet) + b;
+    return std::max(0.0, 1.0 - (on_front ? front : back)[m] - through[m]);
+  }
+  /// Light by paths, which leave out the sun on the start itself; and that sun. Both add to sums over `count` samples.
+  void add_paths(const SampleTarget& target, std::uint64_t stream, std::uint32_t count, SampleMeans& sums) const;
+  void add_sun(const SampleTarget& target, std::uint64_t stream, std::uint32_t count, double share, SampleMeans& sums) const;
+
   struct Particles {
     std::vector<double> in, out;  ///< [s][b]
     std::uint64_t rays = 0;
@@ -195,48 +203,58 @@ std::size_t PathSampler::states() const { return impl_->states; }
 std::size_t PathSampler::bands() const { return impl_->bands; }
 bool PathSampler::has_sun() const { return impl_->has_sun; }
 
-void PathSampler::sample(const SampleTarget& target, std::uint32_t randomisation, std::uint32_t count, SampleMeans& means) const {
-  const Impl& my = *impl_;
-  const std::size_t states = my.states, bands = my.bands, sides = states * 2 * bands;
-  means.irradiance.assign(sides, 0.0);
-  means.direct.assign(sides, 0.0);
-  means.absorbed.assign(states * bands, 0.0);
-  means.sunlit.assign(states * 2, 0.0);
-  means.rays = 0;
-  if (!(target.area() > 0.0) || count == 0) return;
-  std::vector<double> here(sides), weight(bands);
-  const std::uint64_t stream = mix(my.seed, target.key(), randomisation);
+void PathSampler::Impl::add_paths(const SampleTarget& target, std::uint64_t stream, std::uint32_t count, SampleMeans& sums) const {
+  std::vector<double> here(states * 2 * bands), weight(bands);
   const auto scramble = static_cast<std::uint32_t>(stream);
   for (std::uint32_t i = 0; i < count; ++i) {
     double x;
     const std::uint32_t facet = target.facet_at(sobol_owen(i, 0, scramble), x);
     const double root = std::sqrt(x), y = sobol_owen(i, 1, scramble);
-    const Vec3 p = my.point(facet, root * (1.0 - y), root * y), n = my.normal(facet);
+    const Vec3 p = point(facet, root * (1.0 - y), root * y), n = normal(facet);
     RandomStream random(mix(stream, i));
     std::fill(here.begin(), here.end(), 0.0);
-    my.one_side(p, cosine_direction(n, sobol_owen(i, 2, scramble), sobol_owen(i, 3, scramble)), facet, random, weight.data(), here.data(),
-                means.direct.data(), means.rays);
-    my.one_side(p, cosine_direction(-n, sobol_owen(i, 6, scramble), sobol_owen(i, 7, scramble)), facet, random, weight.data(),
-                here.data() + bands, means.direct.data() + bands, means.rays);
-    if (my.has_sun)
-      my.sun_at(p, facet, n, sobol_owen(i, 4, scramble), sobol_owen(i, 5, scramble), means.rays, [&](std::size_t s, bool on_front, double factor) {
-        const std::size_t side = 2 * s + (on_front ? 0 : 1);
-        means.sunlit[side] += 1.0;
-        for (std::size_t b = 0; b < bands; ++b) {
-          const double light = factor * my.beams[s].sun->irradiance[b];
-          here[side * bands + b] += light;
-          means.direct[side * bands + b] += light;
-        }
-      });
-    const auto m = my.material(facet);
-    for (std::size_t s = 0; s < states; ++s)
-      for (std::size_t b = 0; b < bands; ++b) {
-        const double on_front = here[2 * s * bands + b], on_back = here[(2 * s + 1) * bands + b], t = my.through[m + b];
-        means.irradiance[2 * s * bands + b] += on_front;
-        means.irradiance[(2 * s + 1) * bands + b] += on_back;
-        means.absorbed[s * bands + b] += std::max(0.0, 1.0 - my.front[m + b] - t) * on_front + std::max(0.0, 1.0 - my.back[m + b] - t) * on_back;
-      }
+    one_side(p, cosine_direction(n, sobol_owen(i, 2, scramble), sobol_owen(i, 3, scramble)), facet, random, weight.data(), here.data(),
+             sums.direct.data(), sums.rays);
+    one_side(p, cosine_direction(-n, sobol_owen(i, 4, scramble), sobol_owen(i, 5, scramble)), facet, random, weight.data(), here.data() + bands,
+             sums.direct.data() + bands, sums.rays);
+    for (std::size_t k = 0; k < here.size(); ++k) {
+      sums.irradiance[k] += here[k];
+      sums.absorbed[k / (2 * bands) * bands + k % bands] += absorptance(facet, k / bands % 2 == 0, k % bands) * here[k];
+    }
   }
+}
+
+void PathSampler::Impl::add_sun(const SampleTarget& target, std::uint64_t stream, std::uint32_t count, double share, SampleMeans& sums) const {
+  const auto scramble = static_cast<std::uint32_t>(mix(stream, 0x73756eULL));
+  for (std::uint32_t i = 0; i < count; ++i) {
+    double x;
+    const std::uint32_t facet = target.facet_at(sobol_owen(i, 0, scramble), x);
+    const double root = std::sqrt(x), y = sobol_owen(i, 1, scramble);
+    const Vec3 p = point(facet, root * (1.0 - y), root * y);
+    sun_at(p, facet, normal(facet), sobol_owen(i, 2, scramble), sobol_owen(i, 3, scramble), sums.rays, [&](std::size_t s, bool on_front, double factor) {
+      const std::size_t side = 2 * s + (on_front ? 0 : 1);
+      sums.sunlit[side] += share;
+      for (std::size_t b = 0; b < bands; ++b) {
+        const double light = share * factor * beams[s].sun->irradiance[b];
+        sums.irradiance[side * bands + b] += light;
+        sums.direct[side * bands + b] += light;
+        sums.absorbed[s * bands + b] += absorptance(facet, on_front, b) * light;
+      }
+    });
+  }
+}
+
+void PathSampler::sample(const SampleTarget& target, std::uint32_t randomisation, std::uint32_t count, std::uint32_t sun_points, SampleMeans& means) const {
+  const Impl& my = *impl_;
+  means.irradiance.assign(my.states * 2 * my.bands, 0.0);
+  means.direct.assign(my.states * 2 * my.bands, 0.0);
+  means.absorbed.assign(my.states * my.bands, 0.0);
+  means.sunlit.assign(my.states * 2, 0.0);
+  means.rays = 0;
+  if (!(target.area() > 0.0) || count == 0) return;
+  const std::uint64_t stream = mix(my.seed, target.key(), randomisation);
+  my.add_paths(target, stream, count, means);
+  if (my.has_sun) my.add_sun(target, stream, count * sun_points, 1.0 / sun_points, means);
   for (auto* sums : {&means.irradiance, &means.direct, &means.absorbed, &means.sunlit})
     for (auto& value : *sums) value /= count;
 }

@@ -32,7 +32,7 @@ class Block {
     tbb::parallel_for(std::size_t{0}, count * reference_randomisations, [&](std::size_t item) {
       const auto facet = static_cast<std::uint32_t>(first + item / reference_randomisations);
       const SampleTarget target(facets_, {facet}, facet);
-      sampler_.sample(target, static_cast<std::uint32_t>(item % reference_randomisations), samples, means_[item]);
+      sampler_.sample(target, static_cast<std::uint32_t>(item % reference_randomisations), samples, 1, means_[item]);
     });
   }
 

@@ -92,7 +92,7 @@ TEST_CASE("certificate: the same for any number of threads; large organs and sma
   const auto run = trace(scene, 16);
   const auto totals = totals_of(run);
   CertificateSettings settings;
-  settings.rays = 30000;
+  settings.rays = 60000;
   settings.threads = 1;
   const auto one = certify(scene, run.facets, totals, run.report.balance, settings, silent());
   settings.threads = 2;

@@ -85,7 +85,7 @@ TEST_CASE("reference: Beer-Lambert through small black leaves of all angles") {
     std::vector<std::uint32_t> ground;
     for (std::size_t f = facets.plant_facets; f < facets.size(); ++f) ground.push_back(static_cast<std::uint32_t>(f));
     SampleMeans means;
-    sampler.sample(SampleTarget(facets, ground, 0), 0, 8192, means);
+    sampler.sample(SampleTarget(facets, ground, 0), 0, 8192, 1, means);
     // one canopy of 20,000 leaves scatters by about .005 about the mean of all canopies, finite leaves add about as much
     CHECK(means.sunlit[0] == Approx(std::exp(-leaf_area_index / (2 * std::cos(zenith * std::numbers::pi / 180)))).margin(0.02));
   }

@@ -59,7 +59,7 @@ Coverage coverage(double heavy, double noise, int organs, bool certain, int runs
 TEST_CASE("the certificate's interval holds the true error in at least nine of ten runs") {
   for (const double heavy : {0.0, 0.4, 0.6})  // kurtosis of the errors about 3, 6 and 13
     for (const double noise : {0.2, 0.5, 1.0, 2.0}) {
-      const auto drawn = coverage(heavy, noise, 320, false, 200);
+      const auto drawn = coverage(heavy, noise, 240, false, 200);
       CAPTURE(heavy, noise);
       CHECK(drawn.rmse >= 0.9);
       CHECK(drawn.bias >= 0.9);

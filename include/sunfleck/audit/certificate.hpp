@@ -16,8 +16,8 @@ namespace sunfleck {
 struct CertificateSettings {
   std::uint64_t seed = 1;  ///< of the solve; the certificate's numbers are independent of those that solve and reference draw from it
   int threads = 0;         ///< 0 = all cores
-  std::uint32_t organs = 320;       ///< to check; all, where a scene has no more
-  std::uint64_t rays = 1'200'000;   ///< to spend, about
+  std::uint32_t organs = 240;       ///< to check; all, where a scene has no more
+  std::uint64_t rays = 0;           ///< to spend, about; 0 = 2 million up to 10^5 facets, then less with their root, 600,000 from 1.1 10^6 on
 };
 
 /// Checks organs of plants, drawn with a probability proportional to their area (systematic sampling in scene order; organs larger than
@@ -28,9 +28,9 @@ struct CertificateSettings {
 /// The interval and the bias's standard error hold both the choice of organs and the noise of the paths (see error_interval.hpp).
 /// Where plants absorb less than 1e-6 of the incident light, irradiance (front + back) takes the place of absorbed in the measures.
 ///
-/// Work is counted in rays, not seconds, so that every machine gives the same certificate: 1.2 million rays, some 4 more per cent
-/// to find out what a path costs, and the tree of rays (about a microsecond a facet): about one second on one core and less than
-/// 2 s with a million facets on two, where solving takes far longer. Fewer organs are checked (at least 64) where 16 samples of each
+/// Work is counted in rays, not seconds, so that every machine gives the same certificate: a number that depends on the number of
+/// facets alone, some per cent more to find out what a path costs, and the tree of rays (1.3 microseconds a facet): below 2 s on one core
+/// up to 10^5 facets, and some 4 s with 10^6, where solving takes far longer. Fewer organs are checked (at least 64) where 16 samples of each
 /// would cost more. Same bits for any number of threads. A scene without plant organs yields measures of zero and no organs.
 Certificate certify(const Scene& scene, const FacetScene& facets, const OrganTotals& solved, const std::vector<std::vector<Balance>>& balance,
                     const CertificateSettings& settings, Progress& progress);

@@ -45,8 +45,8 @@ struct SampleMeans {
 /// From half of the first weight on, a path is ended at random and the survivors weighted up (Russian roulette).
 /// One path serves all bands and all states' skies; shadow rays go to each state's sun.
 ///
-/// The first dimensions (point, direction from either side, place on the sun's disc) are an Owen-scrambled Sobol' sequence per
-/// target and randomisation, the rest independent; numbers depend on (seed, key of the target, randomisation, sample) alone.
+/// The first dimensions (point and direction from either side; for the sun, point and place on the disc) are Owen-scrambled Sobol'
+/// sequences per target and randomisation, the rest independent; numbers depend on (seed, key of the target, randomisation, sample) alone.
 class PathSampler {
  public:
   /// `rays` over the same facets; all must outlive the sampler.
@@ -57,8 +57,9 @@ class PathSampler {
   std::size_t bands() const;
   bool has_sun() const;  ///< in any state
 
-  /// `count` samples, each one point with one path from its front and one from its back. Any number of threads may call it.
-  void sample(const SampleTarget& target, std::uint32_t randomisation, std::uint32_t count, SampleMeans& means) const;
+  /// `count` samples, each one point with one path from its front and one from its back, and `sun_points` (at least 1) further
+  /// points with shadow rays to the suns. Any number of threads may call it.
+  void sample(const SampleTarget& target, std::uint32_t randomisation, std::uint32_t count, std::uint32_t sun_points, SampleMeans& means) const;
 
   /// Share of the light that first meets facets or ground which leaves the scene again, per state and band [s][b] [-], from 16
   /// times `count` particles for each state's sun and sky, sent into the scene: an estimate independent of sample(), for the balance. 0
