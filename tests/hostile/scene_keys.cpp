@@ -20,6 +20,7 @@ TEST_CASE("Broken TOML is named with its line", "[hostile][scene]") {
         "scene.toml:2: not valid TOML: Error while parsing table header: expected ']', saw '\\n'");
   CHECK(message("bands = [\"PAR\"]\nbands = [\"NIR\"]\n") ==
         "scene.toml:2: not valid TOML: Error while parsing key-value pair: cannot redefine existing array 'bands'");
+  CHECK(message("a = [0, }, 0]\n") == "scene.toml:1: not valid TOML: Error while parsing value: could not determine value type");
   CHECK(message("bands = \n") == "scene.toml:1: not valid TOML: Error while parsing key-value pair: expected value, saw '\\n'");
   CHECK(message("bands = [\"P\xff\"]\n") == "scene.toml:1: not valid TOML: Encountered invalid utf-8 sequence");
   CHECK(message("a = 1\n[sky]\nx = 00\n") ==
