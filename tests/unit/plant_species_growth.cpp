@@ -140,6 +140,30 @@ TEST_CASE("plants grow with age") {
   }
 }
 
+TEST_CASE("an older tree is the younger one grown on") {
+  const auto trunk_units = [](double age) {
+    const Plant plant = grow(species("locust"), age, 4);
+    std::vector<Affine> frames;
+    for (const auto& s : plant.structures)
+      if (plant.types[s.type] == "growth_unit" && plant.types[plant.structures[s.parent].type] == "trunk") frames.push_back(s.frame);
+    return frames;
+  };
+  const auto young = trunk_units(3), old = trunk_units(5);
+  REQUIRE(young.size() == 3);
+  REQUIRE(old.size() == 5);
+  for (std::size_t i = 0; i < young.size(); ++i) {
+    CHECK(young[i].translation == old[i].translation);
+    CHECK(young[i].linear == old[i].linear);
+  }
+}
+
+TEST_CASE("the poplar of the benchmark scene has the size that its file promises") {
+  const Plant plant = read_species_plant(folder + "poplar.toml", 8, 1);
+  CHECK(plant.facet_count() == 112528);
+  CHECK(leaf_totals(plant).leaves == 3870);
+  CHECK(leaf_totals(plant).area_m2 == Approx(22.1).epsilon(0.005));  // the file gives three digits
+}
+
 TEST_CASE("structure types of the growth programs") {
   const auto types = [](const std::string& name, double age) {
     auto list = grow(species(name), age, 1).types;

@@ -107,8 +107,8 @@ struct CerealGrowth {
   double basal_nodes = 4.0;  ///< so many lowest nodes stay short
   double basal_length_m = 0.01;
   double upper_length_m = 0.1;
-  double elongation_start = 0.0;      ///< before this age all internodes stay as short as the basal ones [days]
-  double peduncle_length_m = 0.0;     ///< bare stem between the highest collar and an inflorescence at the top
+  double elongation_start = 0.0;   ///< before this age all internodes stay as short as the basal ones [days]
+  double peduncle_length_m = 0.0;  ///< bare stem between the highest collar and an inflorescence at the top
   double base_radius_m = 0.004;
   double top_radius_m = 0.002;
   std::int64_t sides = 6;
