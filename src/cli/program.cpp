@@ -18,7 +18,6 @@
 #include <sunfleck/core/error.hpp>
 #include <sunfleck/core/names.hpp>
 #include <sunfleck/core/version.hpp>
-#include <sunfleck/view/stored.hpp>
 
 #include "cli/terminal_progress.hpp"
 
@@ -130,6 +129,65 @@ void add_compare(CLI::App& verb, CompareOptions& o) {
       "  sunfleck compare stand.h5 truth.h5");
 }
 
+void add_export(CLI::App& verb, ExportOptions& o) {
+  verb.add_option("RESULT", o.result, "result of 'sunfleck solve', HDF5")->required()->type_name("");
+  verb.add_option("-o,--output", o.output, "file to write: .ply is a lit mesh with every quantity per facet, .csv a table per organ")
+      ->required()
+      ->type_name("FILE");
+  verb.add_option("--quantity", o.quantity, "mesh only: the quantity that colours show (default absorbed)")->type_name("NAME");
+  verb.add_option("--band", o.band, "mesh only: the band that colours show (default the first)")->type_name("NAME");
+  verb.add_option("--state", o.state, "mesh only: the lighting state that colours show (default the first)")->type_name("NAME");
+  verb.footer(
+      "Units: irradiance and absorbed light of facets [W m^-2], absorbed light of organs [W], areas [m^2], lengths [m].\n\n"
+      "Examples:\n"
+      "  sunfleck export stand.h5 -o stand.ply\n"
+      "  sunfleck export stand.h5 -o organs.csv");
+}
+
+void add_render(CLI::App& verb, RenderOptions& o) {
+  verb.add_option("RESULT", o.result, "result of 'sunfleck solve', HDF5")->required()->type_name("");
+  verb.add_option("-o,--output", o.output, "picture to write")->required()->type_name("IMAGE.png");
+  verb.add_option("--quantity", o.quantity,
+                  "'colour' (natural colour, the default) or a stored quantity as a map with a legend, such as 'absorbed', 'irradiance' or "
+                  "'sunlit'")
+      ->type_name("NAME");
+  verb.add_option("--band", o.band, "band of the quantity (default the first)")->type_name("NAME");
+  verb.add_option("--state", o.state, "lighting state, by name (default the first)")->type_name("NAME");
+  verb.add_option("--colormap", o.colormap, "colour map of a quantity (default viridis)")->type_name("NAME");
+  verb.add_option("--range", o.range, "lowest and highest value of the map, in the quantity's unit (default from the data)")
+      ->expected(2)
+      ->type_name("LOW HIGH")
+      ->check(number_between(-unlimited, unlimited));
+  verb.add_flag("--log", o.logarithmic, "logarithmic map");
+  auto* eye = verb.add_option("--eye", o.eye, "camera position [m] (default frames the scene)")
+                  ->expected(3)
+                  ->type_name("X Y Z")
+                  ->check(number_between(-unlimited, unlimited));
+  verb.add_option("--target", o.target, "point that the camera looks at [m] (default the scene's centre)")
+      ->expected(3)
+      ->type_name("X Y Z")
+      ->check(number_between(-unlimited, unlimited));
+  verb.add_option("--azimuth", o.azimuth_deg, "side from which the camera looks [degrees from north over east]")
+      ->type_name("DEGREES")
+      ->check(number_between(-360, 360))
+      ->excludes(eye);
+  verb.add_option("--elevation", o.elevation_deg, "height of the camera above the horizon [degrees]")
+      ->type_name("DEGREES")
+      ->check(number_between(-90, 90))
+      ->excludes(eye);
+  verb.add_option("--field-of-view", o.field_of_view_deg, "vertical opening of the camera [degrees]")
+      ->type_name("DEGREES")
+      ->check(number_between(1, 120));
+  verb.add_option("--width", o.width, "pixels (default 1200)")->type_name("N")->check(count_from(16, 16384));
+  verb.add_option("--height", o.height, "pixels (default 900)")->type_name("N")->check(count_from(16, 16384));
+  verb.add_option("--samples", o.samples, "rays per pixel (default 9)")->type_name("N")->check(count_from(1, 1024));
+  verb.add_flag("!--no-ground", o.ground, "leave out the ground");
+  verb.footer(
+      "Examples:\n"
+      "  sunfleck render stand.h5 -o stand.png\n"
+      "  sunfleck render stand.h5 -o par.png --quantity absorbed --band PAR --elevation 20");
+}
+
 void add_generate(CLI::App& verb, GenerateOptions& o) {
   verb.add_option("SPECIES", o.species, "species file, TOML, such as those in plants/")->required()->type_name("");
   verb.add_option("-o,--output", o.output, "plant to write as a hierarchy of structures, HDF5")->required()->type_name("PLANT.h5");
@@ -140,36 +198,6 @@ void add_generate(CLI::App& verb, GenerateOptions& o) {
   verb.footer(
       "Example:\n"
       "  sunfleck generate plants/poplar.toml -o poplar.h5 --age 8 --seed 3");
-}
-
-void add_render(CLI::App& verb, RenderOptions& o) {
-  verb.add_option("RESULT", o.result, "result file of 'sunfleck solve'")->required()->type_name("");
-  verb.add_option("-o,--output", o.output, "picture to write, .png")->required()->type_name("FILE");
-  verb.add_option("--quantity", o.quantity, "what is drawn: 'colour' (the default) or a map of one of: " + joined(quantity_names()))
-      ->type_name("NAME")->check(one_of(quantity_names()));
-  verb.add_option("--band", o.band, "band of a map, or the one a natural picture is made from; default PAR, else the first")->type_name("NAME");
-  verb.add_option("--state", o.state, "lighting state by name, or number from 1; default the first")->type_name("NAME");
-  verb.add_option("--colormap", o.colormap, "colours of a map: " + joined(color_map_names()))->type_name("NAME")->check(one_of(color_map_names()));
-  verb.add_option("--range", o.range, "lowest and highest value of a map; default from the data")->expected(2)->type_name("LOW HIGH");
-  verb.add_flag("--log", o.logarithmic, "logarithmic scale of a map");
-  verb.add_option("--azimuth", o.azimuth_deg, "where the camera stands, degrees from north over east; default 150")->type_name("DEG");
-  verb.add_option("--elevation", o.elevation_deg, "height of the camera above the horizon, degrees; default 25")
-      ->type_name("DEG")->check(number_between(-90, 90));
-  verb.add_option("--eye", o.eye, "place of the camera, m; default frames all plants")->expected(3)->type_name("X Y Z");
-  verb.add_option("--target", o.target, "point in the middle of the picture, m")->expected(3)->type_name("X Y Z");
-  verb.add_option("--fov", o.field_of_view_deg, "vertical angle of view, degrees; default 35")->type_name("DEG")->check(number_between(0.01, 170));
-  verb.add_flag("--orthographic", o.orthographic, "parallel projection instead of perspective");
-  verb.add_option("--width", o.width, "pixels; default 1200")->type_name("N")->check(count_from(1, 32768));
-  verb.add_option("--height", o.height, "pixels; default 900")->type_name("N")->check(count_from(1, 32768));
-  verb.add_option("--samples", o.samples, "rays per pixel, rounded up to a square; default 9")->type_name("N")->check(count_from(1, 4096));
-  verb.add_flag_callback("--no-ground", [&o] { o.ground = false; }, "leave the ground out");
-  verb.add_flag("--map-ground", o.map_ground, "colour the ground of a map by its values too");
-  verb.add_flag("--infinite", o.infinite, "draw a periodic scene with its repetition to the horizon");
-  verb.footer(
-      "Examples:\n"
-      "  sunfleck render stand.h5 -o stand.png\n"
-      "  sunfleck render stand.h5 -o par.png --quantity absorbed --band PAR --map-ground\n"
-      "  sunfleck render stand.h5 -o top.png --elevation 90 --azimuth 180 --orthographic");
 }
 
 std::string hint(const std::string& found, const std::vector<std::string>& known) {
@@ -199,8 +227,9 @@ class Program {
     add("solve", "the light that every facet and organ absorbs, into a result file", add_solve, verbs_.solve, verb_solve);
     add("plan", "what a solve would do and leave out, its memory and work, without solving", add_plan, verbs_.plan, verb_plan);
     add("compare", "the error of one result against another", add_compare, verbs_.compare, verb_compare);
+    add("export", "a result as a lit mesh or a table", add_export, verbs_.exporting, verb_export);
+    add("render", "a picture of a result", add_render, verbs_.render, verb_render);
     add("generate", "a procedural plant from a species file", add_generate, verbs_.generate, verb_generate);
-    add("render", "a ray-traced picture of a result: natural colour, or a map of a quantity with its legend", add_render, verbs_.render, verb_render);
   }
 
   int run(int argc, char** argv) {
