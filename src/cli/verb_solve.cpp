@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <tbb/global_control.h>
 
+#include <sunfleck/audit/certificate.hpp>
 #include <sunfleck/core/error.hpp>
 #include <sunfleck/core/memory.hpp>
 #include <sunfleck/core/version.hpp>
@@ -59,6 +60,11 @@ SolveReport run_method(const MethodChoice& choice, const Scene& scene, const Fac
   return solve_radiosity(scene, facets, settings, sink, progress);
 }
 
+bool wants_certificate(const MethodChoice& choice, const Scene& scene, const FacetScene& facets, const SolveOptions& options) {
+  return choice.method != "reference" && options.certificate && scene.solve.certificate.value_or(true) &&
+         facets.plant_facets > facets.zero_area_facets;
+}
+
 void say_timings(const SolveReport& report, std::size_t facets, double seconds, Progress& progress) {
   for (const auto& [phase, spent] : report.timings) progress.line(fmt::format("  {:<28}{:>9.2f} s", phase, spent));
   progress.line(fmt::format("  {:<28}{:>9.2f} s  {} facets/s, peak memory {}", "in all", seconds,
@@ -85,12 +91,21 @@ int verb_solve(const SolveOptions& options, Progress& progress) {
   SolveReport report = run_method(choice, scene, facets, options, seed, writer, progress);
   report.timings.emplace(report.timings.begin(), "read", read_seconds);
 
+  std::optional<Certificate> certificate;
+  if (wants_certificate(choice, scene, facets, options)) {
+    const Stopwatch watch;
+    CertificateSettings settings;
+    settings.seed = seed;
+    settings.threads = options.threads;
+    certificate = certify(scene, facets, writer.totals(), report.balance, settings, progress);
+    add_seconds(report.timings, "certificate", watch.seconds());
+  }
   progress.check();
   const Stopwatch finishing;
-  writer.finish(report, nullptr);
+  writer.finish(report, certificate ? &*certificate : nullptr);
   add_seconds(report.timings, "finish the file", finishing.seconds());
 
-  print_solve_table(scene, report, nullptr);
+  print_solve_table(scene, report, certificate ? &*certificate : nullptr);
   say_timings(report, facets.size(), total.seconds(), progress);
   progress.line("wrote " + options.result);
   if (report.status == SolveStatus::converged) return 0;
