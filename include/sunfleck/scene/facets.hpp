@@ -46,7 +46,8 @@ struct FacetScene {
   std::size_t size() const { return corners.size(); }
 };
 
-/// Writes out every copy. Throws InputError if the scene has more than 2^31 facets or no facet.
+/// Writes out every copy of a scene that has passed check_scene(). Throws InputError if it has more than 2^31 facets, more than memory
+/// holds, a facet of infinite area, or no facet.
 FacetScene expand(const Scene& scene);
 
 }  // namespace sunfleck
