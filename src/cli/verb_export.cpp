@@ -7,8 +7,8 @@
 #include <fmt/format.h>
 
 #include <sunfleck/core/error.hpp>
-#include <sunfleck/core/names.hpp>
 #include <sunfleck/view/export.hpp>
+#include <sunfleck/view/stored.hpp>
 
 #include "cli/output_path.hpp"
 
@@ -17,13 +17,6 @@ namespace sunfleck {
 namespace {
 
 const std::vector<std::string> suffixes{".ply", ".csv"};
-
-std::size_t row_of(const std::string& option, const std::string& name, const std::vector<std::string>& names) {
-  const auto at = std::find(names.begin(), names.end(), name);
-  if (at != names.end()) return static_cast<std::size_t>(at - names.begin());
-  const std::string nearest = nearest_name(name, names);
-  throw UsageError(fmt::format("{}: found '{}'; expected one of {}{}", option, name, joined(names), nearest.empty() ? "" : " (did you mean '" + nearest + "'?)"));
-}
 
 }  // namespace
 
@@ -40,15 +33,8 @@ int verb_export(const ExportOptions& options, Progress& progress) {
   }
   MeshChoice choice;
   if (options.quantity) choice.quantity = *options.quantity;
-  if (options.band)
-    choice.band = row_of("--band", *options.band, result.bands());
-  else if (const auto par = std::find(result.bands().begin(), result.bands().end(), "PAR"); par != result.bands().end())
-    choice.band = static_cast<std::size_t>(par - result.bands().begin());
-  if (options.state) {
-    std::vector<std::string> names;
-    for (const auto& s : result.states()) names.push_back(s.name);
-    choice.state = row_of("--state", *options.state, names);
-  }
+  choice.band = band_row(result, options.band);
+  if (options.state) choice.state = state_row(result, options.state);
   export_ply(result, options.output, choice, progress);
   progress.line(fmt::format("wrote {}: {} facets", options.output, result.facet_count()));
   return 0;

@@ -100,6 +100,15 @@ class Result::Impl {
   std::size_t facets = 0, organs = 0;
 };
 
+bool is_result(const std::string& file) {
+  try {
+    const h5::DatasetReader reader(file);
+    return reader.has_attribute("/", "format") && reader.text_attribute("/", "format") == "sunfleck-result";
+  } catch (const Error&) {
+    return false;
+  }
+}
+
 Result::Result(const std::string& file) : impl_(std::make_unique<Impl>(file)) {}
 Result::~Result() = default;
 Result::Result(Result&&) noexcept = default;
@@ -249,6 +258,14 @@ std::vector<std::pair<std::string, std::uint64_t>> Result::memory() const {
   auto out = read_pairs<std::uint64_t>(impl_->reader, "memory", "bytes");
   out.emplace_back("peak_resident", impl_->reader.count_attribute("memory", "peak_resident_bytes"));
   return out;
+}
+
+std::optional<PeriodicCell> Result::periodic() const {
+  const auto& reader = impl_->reader;
+  if (!reader.has("geometry/periodic_cell")) return std::nullopt;
+  reader.expect("geometry/periodic_cell", {4});
+  const auto cell = reader.all<double>("geometry/periodic_cell");
+  return PeriodicCell{cell[0], cell[1], cell[2], cell[3]};
 }
 
 std::optional<Certificate> Result::certificate() const {

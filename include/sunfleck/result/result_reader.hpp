@@ -15,6 +15,9 @@
 
 namespace sunfleck {
 
+/// True if the file is HDF5 with format = "sunfleck-result"; never throws.
+bool is_result(const std::string& file);
+
 /// What the root of the file says.
 struct ResultHeader {
   std::string software_version, method, status, scene_text, scene_file, scene_sha256;
@@ -75,6 +78,8 @@ class Result {
   std::vector<std::pair<std::string, std::uint64_t>> counts() const;
   std::vector<std::pair<std::string, std::uint64_t>> memory() const;  ///< ends with "peak_resident"
   std::optional<Certificate> certificate() const;
+  /// The cell that repeats; none for a finite scene, or where /geometry was not kept.
+  std::optional<PeriodicCell> periodic() const;
 
  private:
   class Impl;

@@ -1,0 +1,108 @@
+#include "cli/info_result.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+
+#include <sunfleck/result/result_reader.hpp>
+
+#include "cli/solve_table.hpp"
+#include "cli/text_units.hpp"
+
+namespace sunfleck {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+const std::vector<std::string>& datasets() {
+  static const std::vector<std::string> names{"facets/irradiance", "facets/absorbed",  "facets/sunlit",   "facets/area",     "facets/centroid", "facets/organ",
+                                              "organs/irradiance", "organs/absorbed", "organs/sunlit",   "organs/area",     "variance/facets", "variance/organs"};
+  return names;
+}
+
+std::string shape_text(const std::vector<std::size_t>& dims) { return fmt::format("[{}]", fmt::join(dims, ", ")); }
+
+Json json_of(const Result& r) {
+  const auto& header = r.header();
+  Json json{{"file", r.file()}, {"kind", "result"}, {"method", header.method}, {"status", header.status}, {"software_version", header.software_version},
+            {"scene_file", header.scene_file}, {"scene_sha256", header.scene_sha256}};
+  json["bands"] = Json::array();
+  for (std::size_t b = 0; b < r.bands().size(); ++b) json["bands"].push_back({{"name", r.bands()[b]}, {"unit", r.band_units()[b]}});
+  const auto balance = r.balance();
+  json["states"] = Json::array();
+  for (std::size_t s = 0; s < r.states().size(); ++s) {
+    const auto& state = r.states()[s];
+    Json row{{"name", state.name}, {"duration_s", state.duration_s}};
+    if (state.sun) row["sun"] = {{"direction", {state.sun->direction.x, state.sun->direction.y, state.sun->direction.z}}, {"irradiance", state.sun->irradiance}};
+    if (state.sky) row["sky"] = {{"model", name_of(state.sky->model)}, {"irradiance", state.sky->irradiance}};
+    for (std::size_t b = 0; b < r.bands().size(); ++b) {
+      const auto& x = balance[s][b];
+      row["balance"][r.bands()[b]] = {{"incident", x.incident}, {"leaves", x.leaves}, {"ground", x.ground}, {"escaped", x.escaped}, {"residual", x.residual()}};
+    }
+    json["states"].push_back(row);
+  }
+  json["facets"] = r.facet_count();
+  json["organs"] = r.organ_count();
+  for (const auto& name : datasets())
+    if (r.has(name)) json["datasets"][name] = r.shape(name);
+  if (const auto c = r.certificate()) json["certificate"] = {{"organs", c->organs.size()}, {"rmse", c->rmse}, {"rmse_low", c->rmse_low}, {"rmse_high", c->rmse_high}, {"bias", c->bias}};
+  const auto convergence = r.convergence();
+  if (!convergence.empty()) json["residual"] = convergence.back().residual;
+  for (const auto& [name, value] : r.counts()) json["counts"][name] = value;
+  for (const auto& [name, seconds] : r.timings()) json["timings_s"][name] = seconds;
+  for (const auto& [name, bytes] : r.memory()) json["memory_bytes"][name] = bytes;
+  return json;
+}
+
+void print_states(const Result& r) {
+  for (std::size_t s = 0; s < r.states().size(); ++s) {
+    const auto& state = r.states()[s];
+    std::string light;
+    if (state.sun) light += fmt::format("sun from ({:.3f}, {:.3f}, {:.3f}) {:g}", state.sun->direction.x, state.sun->direction.y, state.sun->direction.z, fmt::join(state.sun->irradiance, " / "));
+    if (state.sky) light += fmt::format("{}sky {} {:g}", light.empty() ? "" : ", ", name_of(state.sky->model), fmt::join(state.sky->irradiance, " / "));
+    const std::string duration = state.duration_s > 0 ? fmt::format(", {:g} s", state.duration_s) : "";
+    fmt::print("{:<11}{}: {}{}\n", s == 0 ? "states" : "", state.name.empty() ? "(no name)" : state.name, light.empty() ? "dark" : light, duration);
+  }
+}
+
+}  // namespace
+
+void print_result_info(const std::string& file, bool json) {
+  const Result r(file);
+  if (json) {
+    fmt::print("{}\n", json_of(r).dump(2));
+    return;
+  }
+  const auto& header = r.header();
+  fmt::print("result     {}\nscene      {}\nmethod     {}, {} (Sunfleck {})\n", file, header.scene_file.empty() ? "made in memory" : header.scene_file, header.method, header.status,
+             header.software_version);
+  for (std::size_t b = 0; b < r.bands().size(); ++b) fmt::print("{:<11}{} in {}\n", b == 0 ? "bands" : "", r.bands()[b], r.band_units()[b]);
+  print_states(r);
+  fmt::print("facets     {}\norgans     {}\n", r.facet_count() > 0 ? std::to_string(r.facet_count()) : "not kept", r.organ_count());
+  for (const auto& name : datasets())
+    if (r.has(name)) fmt::print("  {:<20} {}\n", name, shape_text(r.shape(name)));
+  if (const auto convergence = r.convergence(); !convergence.empty())
+    fmt::print("residual   {:.2e} after {}\n", convergence.back().residual, counted(convergence.size(), "iteration", "iterations"));
+  for (const auto& [name, value] : r.counts()) fmt::print("  {:<20} {}\n", name, value);
+
+  Scene scene;  // as much of it as the table shows
+  scene.bands = r.bands();
+  scene.band_units = r.band_units();
+  scene.states = r.states();
+  scene.periodic = r.periodic();
+  SolveReport report;
+  report.method = header.method;
+  report.balance = r.balance();
+  const auto certificate = r.certificate();
+  fmt::print("\n");
+  std::fflush(stdout);
+  print_solve_table(scene, report, certificate ? &*certificate : nullptr);
+
+  fmt::print("\ntimings\n");
+  for (const auto& [name, seconds] : r.timings()) fmt::print("  {:<28}{:>9.3f} s\n", name, seconds);
+  fmt::print("memory\n");
+  for (const auto& [name, bytes] : r.memory()) fmt::print("  {:<28}{:>11}\n", name, bytes_text(static_cast<double>(bytes)));
+}
+
+}  // namespace sunfleck
