@@ -16,7 +16,7 @@ struct Tint {
 
 Tint tint_of(Surface surface) {
   switch (surface) {
-    case Surface::leaf: return {{0.88f, 1.76f, 0.36f}, {1.02f, 1.86f, 0.12f}};
+    case Surface::leaf: return {{0.84f, 1.86f, 0.30f}, {1.04f, 1.86f, 0.10f}};
     case Surface::stem: return {{1.02f, 1.56f, 0.42f}, {1.08f, 1.72f, 0.20f}};
     case Surface::bark: return {{1.26f, 0.99f, 0.75f}, {1.26f, 0.99f, 0.75f}};
     case Surface::ear: return {{1.35f, 1.15f, 0.50f}, {1.40f, 1.25f, 0.35f}};
@@ -116,7 +116,7 @@ Exposure exposure_for(std::vector<float> luminances) {
   if (luminances.empty()) return {};
   const auto at = luminances.begin() + static_cast<std::ptrdiff_t>(static_cast<double>(luminances.size() - 1) * 0.9);
   std::nth_element(luminances.begin(), at, luminances.end());
-  return {.scale = 0.65f / *at, .white = 2.5f};
+  return {.scale = 0.5f / *at, .white = 2.5f};
 }
 
 Rgb tone_map(const Rgb& colour, const Exposure& exposure) {

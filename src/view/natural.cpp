@@ -130,7 +130,7 @@ class NaturalLight {
 
 /// Sky behind the scene, display light: decoration only.
 Rgb sky_behind(const Vec3& direction, bool sunny) {
-  const Rgb zenith = sunny ? Rgb{0.13f, 0.32f, 0.68f} : Rgb{0.50f, 0.55f, 0.60f}, horizon = sunny ? Rgb{0.66f, 0.80f, 0.92f} : Rgb{0.78f, 0.81f, 0.83f};
+  const Rgb zenith = sunny ? Rgb{0.10f, 0.27f, 0.62f} : Rgb{0.50f, 0.55f, 0.60f}, horizon = sunny ? Rgb{0.62f, 0.77f, 0.90f} : Rgb{0.78f, 0.81f, 0.83f};
   const auto up = static_cast<float>(std::max(0.0, direction.z));
   return glm::mix(horizon, zenith, std::pow(up, 0.55f));
 }
@@ -149,7 +149,7 @@ Image draw_natural(const FacetScene& scene, const FacetLight& light, const Pictu
     for (const auto& p : scene.corners[f]) ground_height = std::min(ground_height, p.z);
   if (extended) natural.prepare_open_ground();
   const bool repeated = scene.periodic && settings.infinite;
-  const double size = glm::length(scene.bounds.size()), haze_distance = 20.0 * size, clear_distance = glm::length(camera.eye() - scene.bounds.centre());
+  const double size = glm::length(scene.bounds.size()), haze_distance = 28.0 * size, clear_distance = glm::length(camera.eye() - scene.bounds.centre());
   const double far = repeated ? clear_distance + 4 * haze_distance : std::numeric_limits<double>::infinity();
 
   // Exposure from a coarse grid of the same rays.
@@ -166,10 +166,12 @@ Image draw_natural(const FacetScene& scene, const FacetLight& light, const Pictu
   const auto shade = [&](const CameraRay& ray, std::uint64_t bits) {
     const auto hit = rays.camera().first_hit(ray.origin, ray.direction, no_facet, far);
     const Rgb sky = sky_behind(ray.direction, natural.sunny());
-    const auto haze = [&](const Rgb& near, double distance) { return glm::mix(near, sky, static_cast<float>(1 - std::exp(-distance / haze_distance))); };
+    const auto haze = [&](const Rgb& near, double distance) {
+      return glm::mix(near, sky, static_cast<float>(1 - std::exp(-std::max(0.0, distance - clear_distance) / haze_distance)));
+    };
     if (hit) {
       const Rgb colour = tone_map(natural.exitance(hit, bits), exposure);
-      return repeated ? haze(colour, std::max(0.0, hit.distance - clear_distance)) : colour;
+      return repeated ? haze(colour, hit.distance) : colour;
     }
     if (!extended || !(ray.direction.z < 0) || !(ray.origin.z > ground_height)) return sky;
     const double distance = (ground_height - ray.origin.z) / ray.direction.z;
