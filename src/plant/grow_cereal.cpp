@@ -150,7 +150,7 @@ class CerealGrower {
     for (int tries = 0; tries < 40; ++tries) {  // a blade that reaches the ground bends less, then stands steeper
       const double angle = radians(insertion);
       frame = organ_frame(glm::normalize(std::cos(angle) * up + std::sin(angle) * side), up);
-      from = collar + radius(stem, relative) * side;
+      from = collar + mantle_gap * radius(stem, relative) * side;
       mesh = blade(curvature, width / length);
       if (build_.lowest(mesh, {length * frame, from}) >= clearance_m) break;
       if (curvature > 10)

@@ -232,7 +232,7 @@ class TreeGrower {
     const Vec3 side = std::cos(node.azimuth_rad) * node.frame[0] + std::sin(node.azimuth_rad) * node.frame[1];
     Vec3 along = std::cos(angle) * node.frame[2] + std::sin(angle) * side;
     along = turned_to_elevation(glm::normalize(along), radians(-80), radians(l.droop_deg));
-    const Vec3 position = node.top + radius * side;
+    const Vec3 position = node.top + mantle_gap * radius * side;
     const std::int64_t choices = (l.leaflets_high - l.leaflets_low) / 2 + 1;
     const std::int64_t leaflets =
         l.leaflets_low + 2 * std::min(choices - 1, static_cast<std::int64_t>(random.next() * static_cast<double>(choices)));
@@ -265,7 +265,8 @@ class TreeGrower {
         const Vec3 tangent = point.tangent, front{0, point.tangent.z, -point.tangent.y};
         const Vec3 out = terminal ? tangent : std::cos(tilt) * tangent + hand * std::sin(tilt) * Vec3{1, 0, 0};
         const Mat3 leaflet_frame = frame * organ_frame(out, front);
-        const Vec3 at = position + frame * (length * point.position);
+        const Vec3 beside = (terminal ? 0.0 : hand * mantle_gap) * l.rachis_radius_m * length / (l.rachis_length_m * share) * Vec3{1, 0, 0};
+        const Vec3 at = position + frame * (length * point.position + beside);
         const auto leaflet = build_.open(leaf, "leaflet", {leaflet_frame, at}, axis.order, axis.axis_class, size * l.length_m);
         build_.shape(leaflet, blade_, "leaf", {size * l.length_m * leaflet_frame, at});
       }

@@ -19,6 +19,8 @@ inline constexpr double radians(double degrees) {
   return degrees * 0.017453292519943295;
 }
 
+inline constexpr double mantle_gap = 1.15;  ///< leaves start so many radii from an axis, so that they do not cut its mantle
+
 /// Uniform in [-1, 1).
 inline double spread(RandomStream& random) {
   return 2 * random.next() - 1;
