@@ -134,9 +134,13 @@ void add_export(CLI::App& verb, ExportOptions& o) {
   verb.add_option("-o,--output", o.output, "file to write: .ply is a lit mesh with every quantity per facet, .csv a table per organ")
       ->required()
       ->type_name("FILE");
-  verb.add_option("--quantity", o.quantity, "mesh only: the quantity that colours show (default absorbed)")->type_name("NAME");
-  verb.add_option("--band", o.band, "mesh only: the band that colours show (default the first)")->type_name("NAME");
-  verb.add_option("--state", o.state, "mesh only: the lighting state that colours show (default the first)")->type_name("NAME");
+  verb.add_option("--quantity", o.quantity,
+                  "mesh only: what colours show: 'colour' (natural, the default), or a map of absorbed, irradiance_front, irradiance_back, "
+                  "sunlit_front or sunlit_back")
+      ->type_name("NAME");
+  verb.add_option("--band", o.band, "mesh only: the band of that map (default PAR, else the first)")->type_name("NAME");
+  verb.add_option("--state", o.state, "mesh only: the one lighting state to keep, by name or number from 1 (default all, coloured by the first)")
+      ->type_name("NAME");
   verb.footer(
       "Units: irradiance and absorbed light of facets [W m^-2], absorbed light of organs [W], areas [m^2], lengths [m].\n\n"
       "Examples:\n"
@@ -188,6 +192,15 @@ void add_render(CLI::App& verb, RenderOptions& o) {
       "  sunfleck render stand.h5 -o par.png --quantity absorbed --band PAR --elevation 20");
 }
 
+void add_info(CLI::App& verb, InfoOptions& o) {
+  verb.add_option("FILE", o.file, "a result, a plant (.opf .obj .ply .can .h5), a species or a scene (.toml)")->required()->type_name("");
+  verb.add_flag("--json", o.json, "print JSON instead of text");
+  verb.footer(
+      "Examples:\n"
+      "  sunfleck info stand.h5\n"
+      "  sunfleck info plants/poplar.toml --json");
+}
+
 void add_generate(CLI::App& verb, GenerateOptions& o) {
   verb.add_option("SPECIES", o.species, "species file, TOML, such as those in plants/")->required()->type_name("");
   verb.add_option("-o,--output", o.output, "plant to write as a hierarchy of structures, HDF5")->required()->type_name("PLANT.h5");
@@ -229,6 +242,7 @@ class Program {
     add("compare", "the error of one result against another", add_compare, verbs_.compare, verb_compare);
     add("export", "a result as a lit mesh or a table", add_export, verbs_.exporting, verb_export);
     add("render", "a picture of a result", add_render, verbs_.render, verb_render);
+    add("info", "what a result, plant, species or scene file holds", add_info, verbs_.info, verb_info);
     add("generate", "a procedural plant from a species file", add_generate, verbs_.generate, verb_generate);
   }
 
