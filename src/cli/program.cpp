@@ -18,6 +18,7 @@
 #include <sunfleck/core/error.hpp>
 #include <sunfleck/core/names.hpp>
 #include <sunfleck/core/version.hpp>
+#include <sunfleck/view/stored.hpp>
 
 #include "cli/terminal_progress.hpp"
 
@@ -151,45 +152,50 @@ void add_export(CLI::App& verb, ExportOptions& o) {
 void add_render(CLI::App& verb, RenderOptions& o) {
   verb.add_option("RESULT", o.result, "result of 'sunfleck solve', HDF5")->required()->type_name("");
   verb.add_option("-o,--output", o.output, "picture to write")->required()->type_name("IMAGE.png");
-  verb.add_option("--quantity", o.quantity,
-                  "'colour' (natural colour, the default) or a stored quantity as a map with a legend, such as 'absorbed', 'irradiance' or "
-                  "'sunlit'")
-      ->type_name("NAME");
-  verb.add_option("--band", o.band, "band of the quantity (default the first)")->type_name("NAME");
-  verb.add_option("--state", o.state, "lighting state, by name (default the first)")->type_name("NAME");
-  verb.add_option("--colormap", o.colormap, "colour map of a quantity (default viridis)")->type_name("NAME");
-  verb.add_option("--range", o.range, "lowest and highest value of the map, in the quantity's unit (default from the data)")
+  verb.add_option("--quantity", o.quantity, "what is drawn: 'colour' (natural colour, the default), or a map with a legend of one of " + joined(quantity_names()))
+      ->type_name("NAME")
+      ->check(one_of(quantity_names()));
+  verb.add_option("--band", o.band, "band of a map (default PAR, else the first), or the one band that natural colour is made from")->type_name("NAME");
+  verb.add_option("--state", o.state, "lighting state, by name or by number from 1 (default the first)")->type_name("NAME");
+  verb.add_option("--colormap", o.colormap, "colours of a map: " + joined(color_map_names()) + " (default viridis)")
+      ->type_name("NAME")
+      ->check(one_of(color_map_names()));
+  verb.add_option("--range", o.range, "lowest and highest value of a map, in the quantity's unit (default from the data)")
       ->expected(2)
       ->type_name("LOW HIGH")
       ->check(number_between(-unlimited, unlimited));
   verb.add_flag("--log", o.logarithmic, "logarithmic map");
-  auto* eye = verb.add_option("--eye", o.eye, "camera position [m] (default frames the scene)")
+  auto* eye = verb.add_option("--eye", o.eye, "camera position [m] (default as near as all plants are in the picture)")
                   ->expected(3)
                   ->type_name("X Y Z")
                   ->check(number_between(-unlimited, unlimited));
-  verb.add_option("--target", o.target, "point that the camera looks at [m] (default the scene's centre)")
+  verb.add_option("--target", o.target, "point that the camera looks at [m] (default the middle of the plants)")
       ->expected(3)
       ->type_name("X Y Z")
       ->check(number_between(-unlimited, unlimited));
-  verb.add_option("--azimuth", o.azimuth_deg, "side from which the camera looks [degrees from north over east]")
+  verb.add_option("--azimuth", o.azimuth_deg, "where the camera stands [degrees from north over east] (default 150)")
       ->type_name("DEGREES")
       ->check(number_between(-360, 360))
       ->excludes(eye);
-  verb.add_option("--elevation", o.elevation_deg, "height of the camera above the horizon [degrees]")
+  verb.add_option("--elevation", o.elevation_deg, "height of the camera above the horizon [degrees] (default 25)")
       ->type_name("DEGREES")
       ->check(number_between(-90, 90))
       ->excludes(eye);
-  verb.add_option("--field-of-view", o.field_of_view_deg, "vertical opening of the camera [degrees]")
+  verb.add_option("--fov,--field-of-view", o.field_of_view_deg, "vertical opening of the camera [degrees] (default 35)")
       ->type_name("DEGREES")
       ->check(number_between(1, 120));
+  verb.add_flag("--orthographic", o.orthographic, "parallel projection instead of perspective");
   verb.add_option("--width", o.width, "pixels (default 1200)")->type_name("N")->check(count_from(16, 16384));
   verb.add_option("--height", o.height, "pixels (default 900)")->type_name("N")->check(count_from(16, 16384));
-  verb.add_option("--samples", o.samples, "rays per pixel (default 9)")->type_name("N")->check(count_from(1, 1024));
-  verb.add_flag("!--no-ground", o.ground, "leave out the ground");
+  verb.add_option("--samples", o.samples, "rays per pixel, rounded up to a square number (default 9)")->type_name("N")->check(count_from(1, 1024));
+  verb.add_flag_callback("--no-ground", [&o] { o.ground = false; }, "leave out the ground");
+  verb.add_flag("--map-ground", o.map_ground, "colour the ground of a map by its values too");
+  verb.add_flag("--infinite", o.infinite, "draw a periodic scene with its repetition to the horizon");
   verb.footer(
       "Examples:\n"
       "  sunfleck render stand.h5 -o stand.png\n"
-      "  sunfleck render stand.h5 -o par.png --quantity absorbed --band PAR --elevation 20");
+      "  sunfleck render stand.h5 -o par.png --quantity absorbed --band PAR --elevation 20 --map-ground\n"
+      "  sunfleck render stand.h5 -o top.png --elevation 90 --azimuth 180 --orthographic");
 }
 
 void add_info(CLI::App& verb, InfoOptions& o) {
