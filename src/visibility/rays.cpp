@@ -116,25 +116,31 @@ void RayScene::Impl::place() {
 
 void RayScene::Impl::list_primitives() {
   const auto n = static_cast<std::uint32_t>(scene.size());
+  const double most = std::min(1e7 + 32.0 * n, 4e9);  // a cell much smaller than the leaves is a mistake of units
   for (std::uint32_t f = 0; f < n; ++f) {
     if (!(scene.area[f] > 0.0f)) continue;
     Image low, high;
     if (periodic) {
       Box b;
       for (const auto& p : scene.corners[f]) b.add(local(p));
+      if (!(std::max(std::abs(b.low.x), std::abs(b.high.x)) < 1e9 * width && std::max(std::abs(b.low.y), std::abs(b.high.y)) < 1e9 * depth))
+        throw InputError("domain.periodic", "facets more than 10^9 cells away", "plants near a cell of about their size, all in metres");
       const auto first = [](double x, double period) { return static_cast<std::int32_t>(std::floor(x / period)); };
       const auto last = [](double x, double period) { return static_cast<std::int32_t>(std::ceil(x / period)) - 1; };
       low = {first(b.low.x, width), first(b.low.y, depth)};
       // A facet that ends at a border does not reach into the next cell; one that lies in a border belongs to the cell it begins.
       high = {std::max(low.x, last(b.high.x, width)), std::max(low.y, last(b.high.y, depth))};
     }
+    const double images = (1.0 + high.x - low.x) * (1.0 + high.y - low.y);
+    if (static_cast<double>(facet_of.size()) + images > most)
+      throw InputError("domain.periodic", "facets that reach over more than " + std::to_string(static_cast<std::uint64_t>(most)) + " cells",
+                       "a cell of about the plants' size, all in metres");
     for (auto y = low.y; y <= high.y; ++y)
       for (auto x = low.x; x <= high.x; ++x) {
         facet_of.push_back(f);
         if (periodic) image_of.push_back({x, y});
       }
   }
-  if (facet_of.size() >= (std::size_t{1} << 32) - 1) throw Error("the periodic cell needs more than 2^32 images of facets");
 }
 
 Triangle RayScene::Impl::local_corners(std::uint32_t facet, Image image) const {

@@ -38,6 +38,7 @@ struct RayHit {
 /// are seen by the facet itself.
 class RayScene {
  public:
+  /// Throws InputError if facets reach over absurdly many periodic cells (a mistake of units), Error if memory does not suffice.
   explicit RayScene(const FacetScene& scene);
   ~RayScene();
   RayScene(const RayScene&) = delete;
