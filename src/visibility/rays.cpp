@@ -48,10 +48,6 @@ struct Query : RTCIntersectContext {
 
 struct RayScene::Impl {
   explicit Impl(const FacetScene& s);
-  ~Impl() {
-    if (embree) rtcReleaseScene(embree);
-    if (device) rtcReleaseDevice(device);
-  }
 
   void place();                 ///< origin, scale, cell, range of heights
   void list_primitives();
@@ -85,8 +81,12 @@ struct RayScene::Impl {
   std::unordered_map<std::uint32_t, std::vector<Neighbour>> stacks;
   std::size_t pairs = 0;
   std::atomic<std::int64_t> held{0};
-  RTCDevice device = nullptr;
-  RTCScene embree = nullptr;
+  struct Release {
+    void operator()(RTCDevice d) const { rtcReleaseDevice(d); }
+    void operator()(RTCScene s) const { rtcReleaseScene(s); }
+  };
+  std::unique_ptr<RTCDeviceTy, Release> device;  // after `held`, which it counts down when it goes
+  std::unique_ptr<RTCSceneTy, Release> embree;
 };
 
 RayScene::Impl::Impl(const FacetScene& s) : scene(s) {
@@ -173,14 +173,14 @@ void RayScene::Impl::find_stacks() {
 
 void RayScene::Impl::build() {
   // One thread builds: the tree, and with it which of two facets a ray through their common edge meets, is then always the same.
-  device = rtcNewDevice("threads=1");
+  device.reset(rtcNewDevice("threads=1"));
   if (!device) throw Error("Embree could not be started (error " + std::to_string(rtcGetDeviceError(nullptr)) + ")");
-  rtcSetDeviceMemoryMonitorFunction(device, monitor, this);
-  embree = rtcNewScene(device);
-  rtcSetSceneFlags(embree, static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION));
+  rtcSetDeviceMemoryMonitorFunction(device.get(), monitor, this);
+  embree.reset(rtcNewScene(device.get()));
+  rtcSetSceneFlags(embree.get(), static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION));
   const std::size_t n = facet_of.size();
   if (n > 0) {
-    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    RTCGeometry geometry = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
     auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), 3 * n));
     auto* indices = static_cast<unsigned*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned), n));
     if (!vertices || !indices) {
@@ -196,11 +196,11 @@ void RayScene::Impl::build() {
       }
     }
     rtcCommitGeometry(geometry);
-    rtcAttachGeometry(embree, geometry);
+    rtcAttachGeometry(embree.get(), geometry);
     rtcReleaseGeometry(geometry);
   }
-  rtcCommitScene(embree);
-  if (const auto error = rtcGetDeviceError(device); error != RTC_ERROR_NONE)
+  rtcCommitScene(embree.get());
+  if (const auto error = rtcGetDeviceError(device.get()); error != RTC_ERROR_NONE)
     throw Error("Embree could not build its tree over " + std::to_string(n) + " facets (error " + std::to_string(error) + ")");
 }
 
@@ -255,12 +255,12 @@ bool RayScene::Impl::segment(const Vec3& from, const Vec3& d, double length, Que
   ray.dir_x = static_cast<float>(d.x), ray.dir_y = static_cast<float>(d.y), ray.dir_z = static_cast<float>(d.z);
   ray.tnear = 0.0f, ray.tfar = static_cast<float>(length), ray.time = 0.0f, ray.mask = ~0u, ray.id = 0, ray.flags = 0;
   if constexpr (any) {
-    rtcOccluded1(embree, &query, &ray);
+    rtcOccluded1(embree.get(), &query, &ray);
     return ray.tfar < 0.0f;
   } else {
     found.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     found.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-    rtcIntersect1(embree, &query, &found);
+    rtcIntersect1(embree.get(), &query, &found);
     return found.hit.geomID != RTC_INVALID_GEOMETRY_ID;
   }
 }
