@@ -48,7 +48,7 @@ int verb_render(const RenderOptions& options, Progress& progress) {
   Image image = [&] {
     if (quantity != "colour") {
       const MapChoice choice{.quantity = quantity, .band = band, .state = state, .map = color_map_from_name(options.colormap.value_or("viridis")),
-                             .logarithmic = options.logarithmic, .range = options.range};
+                             .logarithmic = options.logarithmic, .ground = options.map_ground, .range = options.range};
       return draw_map(scene, stored_map(result, scene, choice), settings, progress);
     }
     FacetLight light = stored_light(result, scene, state);

@@ -60,7 +60,7 @@ ValueScale chosen_scale(const FacetMap& map, const FacetScene& scene, const MapC
       throw UsageError(fmt::format("--range: found {:g} with --log; expected numbers above zero", choice.range[0]));
     return {choice.range[0], choice.range[1], choice.logarithmic};
   }
-  const std::size_t end = scene.plant_facets > 0 ? scene.plant_facets : scene.size(), k = map.sides ? 2 : 1;
+  const std::size_t end = scene.plant_facets > 0 && !choice.ground ? scene.plant_facets : scene.size(), k = map.sides ? 2 : 1;
   std::vector<double> values;
   for (std::size_t f = 0; f < end; ++f)
     if (scene.area[f] > 0)

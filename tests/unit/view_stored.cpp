@@ -95,6 +95,20 @@ TEST_CASE("maps hold the values of the file, with title, unit and scale", "[view
   }
 }
 
+TEST_CASE("the scale of a map comes from plants, with the ground where that is mapped", "[view][result]") {
+  const Folder folder;
+  const Scene scene = small_scene();
+  const Result result(stored(folder, scene, expand(scene)));
+  const FacetScene read = stored_scene(result);
+  MapChoice choice;
+  choice.quantity = "area";  // ground facets, 4 m x 3 m in 12 pieces, are larger than any leaf
+  const FacetMap plants = stored_map(result, read, choice);
+  choice.ground = true;
+  const FacetMap all = stored_map(result, read, choice);
+  REQUIRE(plants.scale.high < 1.0);
+  REQUIRE(all.scale.high == Approx(1.0).epsilon(1e-6));  // areas are kept as float
+}
+
 TEST_CASE("names that the file does not hold are refused with the nearest one", "[view][result]") {
   const Folder folder;
   const Scene scene = small_scene();

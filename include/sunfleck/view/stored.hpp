@@ -31,6 +31,7 @@ struct MapChoice {
   std::size_t band = 0, state = 0;
   ColorMap map = ColorMap::viridis;
   bool logarithmic = false;
+  bool ground = false;        ///< the ground's facets count for the scale too
   std::vector<double> range;  ///< low, high; empty = from the plants' facets (the ground's where there are no plants)
 };
 /// Values of a quantity with scale, title and unit. Throws UsageError for an unknown quantity (with the nearest name) or a
