@@ -209,7 +209,9 @@ void add_info(CLI::App& verb, InfoOptions& o) {
 
 void add_generate(CLI::App& verb, GenerateOptions& o) {
   verb.add_option("SPECIES", o.species, "species file, TOML, such as those in plants/")->required()->type_name("");
-  verb.add_option("-o,--output", o.output, "plant to write as a hierarchy of structures, HDF5")->required()->type_name("PLANT.h5");
+  verb.add_option("-o,--output", o.output, "plant to write: .h5 keeps its hierarchy of structures, .obj its organs as groups")
+      ->required()
+      ->type_name("PLANT.h5|.obj");
   verb.add_option("--age", o.age, "age of the plant, in the unit that the species file states (default the file's own)")
       ->type_name("AGE")
       ->check(number_between(0, unlimited));

@@ -19,10 +19,11 @@ int verb_generate(const GenerateOptions& options, Progress& progress) {
   progress.line(fmt::format("growing {} to {} {}, seed {}", species.name, age, species.age_unit, seed));
   const Plant plant = grow(species, age, seed);
   progress.check();
-  if (std::filesystem::path(options.output).extension() == ".obj")
-    write_plant_obj(plant, options.output);
-  else
+  const std::string suffix = std::filesystem::path(options.output).extension().string();
+  if (suffix == ".h5" || suffix == ".H5")
     write_plant_h5(plant, options.output);
+  else
+    write_plant_obj(plant, options.output);
 
   std::vector<bool> organ(plant.structures.size(), false);
   for (const auto& shape : plant.shapes) organ[shape.structure] = true;
