@@ -1,4 +1,4 @@
-// Scene files: TOML as docs/formats.md describes it.
+// Scene files: TOML as docs/formats-scene.md describes it.
 #pragma once
 
 #include <string>
