@@ -44,7 +44,7 @@ CLI::Validator number_between(double low, double high, bool whole = false) {
       },
       "");
 }
-[[maybe_unused]] CLI::Validator count_from(double low, double high = 9007199254740992.0) {
+CLI::Validator count_from(double low, double high = 9007199254740992.0) {
   return number_between(low, high, true);
 }
 
@@ -95,7 +95,7 @@ void add_solve(CLI::App& verb, SolveOptions& o) {
       ->type_name("N")
       ->check(count_from(0, 4096));
   verb.add_option("--seed", o.seed, "seed of all sampling (default 1)")->type_name("N")->check(count_from(0));
-  verb.add_flag("!--no-certificate", o.certificate, "skip the check of the result against path tracing; the result then says so");
+  verb.add_flag_callback("--no-certificate", [&o] { o.certificate = false; }, "skip the check of the result against path tracing; the result then says so");
   verb.footer(
       "The table on standard output holds, per lighting state and band, incident and absorbed light [W, or umol/s where the scene says "
       "so],\n"
