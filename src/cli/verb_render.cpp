@@ -47,8 +47,13 @@ int verb_render(const RenderOptions& options, Progress& progress) {
 
   Image image = [&] {
     if (quantity != "colour") {
-      const MapChoice choice{.quantity = quantity, .band = band, .state = state, .map = color_map_from_name(options.colormap.value_or("viridis")),
-                             .logarithmic = options.logarithmic, .ground = options.map_ground, .range = options.range};
+      const MapChoice choice{.quantity = quantity,
+                             .band = band,
+                             .state = state,
+                             .map = color_map_from_name(options.colormap.value_or("viridis")),
+                             .logarithmic = options.logarithmic,
+                             .ground = options.map_ground,
+                             .range = options.range};
       return draw_map(scene, stored_map(result, scene, choice), settings, progress);
     }
     FacetLight light = stored_light(result, scene, state);
@@ -56,7 +61,8 @@ int verb_render(const RenderOptions& options, Progress& progress) {
     return draw_natural(scene, light, settings, progress);
   }();
   write_png(image, options.output);
-  progress.line(fmt::format("{}: {} x {} pixels, {} of {} facets, {:.1f} s", options.output, image.width(), image.height(), quantity, scene.size(), watch.seconds()));
+  progress.line(fmt::format("{}: {} x {} pixels, {} of {} facets, {:.1f} s", options.output, image.width(), image.height(), quantity,
+                            scene.size(), watch.seconds()));
   return 0;
 }
 

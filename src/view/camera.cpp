@@ -14,7 +14,9 @@ namespace {
 
 constexpr double degree = std::numbers::pi / 180.0;
 
-bool finite(const Vec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+bool finite(const Vec3& v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
 
 void check(const CameraChoice& c) {
   if ((c.eye && !finite(*c.eye)) || (c.target && !finite(*c.target)) || !std::isfinite(c.azimuth_deg))
@@ -37,7 +39,8 @@ std::array<double, 2> extent(std::span<const Vec3> points, const Vec3& axis) {
 
 }  // namespace
 
-Camera::Camera(const CameraChoice& choice, std::span<const Vec3> points, double aspect, const Frame& frame) : orthographic_(choice.orthographic) {
+Camera::Camera(const CameraChoice& choice, std::span<const Vec3> points, double aspect, const Frame& frame)
+    : orthographic_(choice.orthographic) {
   check(choice);
   Box box;
   for (const auto& p : points) box.add(p);
@@ -90,8 +93,9 @@ Camera::Camera(const CameraChoice& choice, std::span<const Vec3> points, double 
     eye_ = middle - distance * forward_;
     return;
   }
-  // In camera axes a point (x, y, z) lies inside the right edge of the pyramid of an eye (u, v, w) if x - u <= t_r (z - w). Over all points:
-  // a_r = max(x - t_r z) <= u - t_r w, and a_l = max(-x - t_l z) <= -u - t_l w; so w <= -(a_r + a_l) / (t_r + t_l). The same upwards.
+  // In camera axes a point (x, y, z) lies inside the right edge of the pyramid of an eye (u, v, w) if x - u <= t_r (z - w). Over all
+  // points: a_r = max(x - t_r z) <= u - t_r w, and a_l = max(-x - t_l z) <= -u - t_l w; so w <= -(a_r + a_l) / (t_r + t_l). The same
+  // upwards.
   const double tr = right * half_width_, tl = left * half_width_, tt = top * half_height_, tb = bottom * half_height_;
   double ar = -std::numeric_limits<double>::infinity(), al = ar, at = ar, ab = ar, nearest = -ar;
   for (const auto& p : points) {

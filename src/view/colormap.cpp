@@ -38,7 +38,9 @@ double evaluate(const std::array<double, terms>& c, double x) {
   return x * b1 - b2 + c[0];
 }
 
-std::uint8_t code(double v) { return static_cast<std::uint8_t>(std::lround(255 * std::clamp(v, 0.0, 1.0))); }
+std::uint8_t code(double v) {
+  return static_cast<std::uint8_t>(std::lround(255 * std::clamp(v, 0.0, 1.0)));
+}
 
 }  // namespace
 
@@ -52,7 +54,8 @@ ColorMap color_map_from_name(const std::string& name) {
   const auto at = std::find(names.begin(), names.end(), name);
   if (at != names.end()) return static_cast<ColorMap>(at - names.begin());
   const std::string nearest = nearest_name(name, names);
-  throw UsageError("--colormap: found '" + name + "'; expected one of " + joined(names) + (nearest.empty() ? "" : " (did you mean '" + nearest + "'?)"));
+  throw UsageError("--colormap: found '" + name + "'; expected one of " + joined(names) +
+                   (nearest.empty() ? "" : " (did you mean '" + nearest + "'?)"));
 }
 
 Rgb8 color_at(ColorMap map, double t) {
@@ -65,13 +68,15 @@ Rgb8 color_at(ColorMap map, double t) {
 }
 
 Rgb8 category_color(std::size_t k) {
-  constexpr std::array<Rgb8, 8> fixed{{{0, 158, 115}, {213, 94, 0}, {0, 114, 178}, {230, 159, 0}, {204, 121, 167}, {86, 180, 233}, {240, 228, 66}, {90, 90, 90}}};
+  constexpr std::array<Rgb8, 8> fixed{
+      {{0, 158, 115}, {213, 94, 0}, {0, 114, 178}, {230, 159, 0}, {204, 121, 167}, {86, 180, 233}, {240, 228, 66}, {90, 90, 90}}};
   if (k < fixed.size()) return fixed[k];
   // HSL with the hue turned by the golden angle, so that neighbours in a list never look alike.
   const double hue = std::fmod(static_cast<double>(k) * 137.50776405003785, 360.0) / 60.0;
   const double lightness = std::array{0.42, 0.55, 0.68}[k % 3], chroma = (1 - std::fabs(2 * lightness - 1)) * 0.7;
   const double x = chroma * (1 - std::fabs(std::fmod(hue, 2.0) - 1)), low = lightness - chroma / 2;
-  const std::array<std::array<double, 3>, 6> sectors{{{chroma, x, 0}, {x, chroma, 0}, {0, chroma, x}, {0, x, chroma}, {x, 0, chroma}, {chroma, 0, x}}};
+  const std::array<std::array<double, 3>, 6> sectors{
+      {{chroma, x, 0}, {x, chroma, 0}, {0, chroma, x}, {0, x, chroma}, {x, 0, chroma}, {chroma, 0, x}}};
   const auto& s = sectors[std::min<std::size_t>(5, static_cast<std::size_t>(hue))];
   return {code(s[0] + low), code(s[1] + low), code(s[2] + low)};
 }

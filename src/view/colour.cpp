@@ -16,12 +16,18 @@ struct Tint {
 
 Tint tint_of(Surface surface) {
   switch (surface) {
-    case Surface::leaf: return {{0.84f, 1.86f, 0.30f}, {1.04f, 1.86f, 0.10f}};
-    case Surface::stem: return {{1.02f, 1.56f, 0.42f}, {1.08f, 1.72f, 0.20f}};
-    case Surface::bark: return {{1.26f, 0.99f, 0.75f}, {1.26f, 0.99f, 0.75f}};
-    case Surface::ear: return {{1.35f, 1.15f, 0.50f}, {1.40f, 1.25f, 0.35f}};
-    case Surface::flower: return {{1.30f, 0.75f, 0.95f}, {1.35f, 0.70f, 0.95f}};
-    case Surface::soil: return {{1.31f, 0.99f, 0.70f}, {1.31f, 0.99f, 0.70f}};
+    case Surface::leaf:
+      return {{0.84f, 1.86f, 0.30f}, {1.04f, 1.86f, 0.10f}};
+    case Surface::stem:
+      return {{1.02f, 1.56f, 0.42f}, {1.08f, 1.72f, 0.20f}};
+    case Surface::bark:
+      return {{1.26f, 0.99f, 0.75f}, {1.26f, 0.99f, 0.75f}};
+    case Surface::ear:
+      return {{1.35f, 1.15f, 0.50f}, {1.40f, 1.25f, 0.35f}};
+    case Surface::flower:
+      return {{1.30f, 0.75f, 0.95f}, {1.35f, 0.70f, 0.95f}};
+    case Surface::soil:
+      return {{1.31f, 0.99f, 0.70f}, {1.31f, 0.99f, 0.70f}};
   }
   return {Rgb{1.0f}, Rgb{1.0f}};
 }
@@ -57,7 +63,9 @@ bool guess(const std::string& text, Surface& out) {
 
 }  // namespace
 
-float luminance(const Rgb& colour) { return 0.2126f * colour.r + 0.7152f * colour.g + 0.0722f * colour.b; }
+float luminance(const Rgb& colour) {
+  return 0.2126f * colour.r + 0.7152f * colour.g + 0.0722f * colour.b;
+}
 
 Rgb8 encode_srgb(const Rgb& linear) {
   const auto channel = [](float x) {
@@ -85,7 +93,9 @@ Surface surface_of(std::string_view organ_type, std::string_view optics_name) {
 ColourBands colour_bands(std::span<const std::string> names) {
   const auto find = [&](std::initializer_list<std::string_view> any) {
     return static_cast<std::size_t>(
-        std::find_if(names.begin(), names.end(), [&](const std::string& n) { return std::find(any.begin(), any.end(), lower(n)) != any.end(); }) - names.begin());
+        std::find_if(names.begin(), names.end(),
+                     [&](const std::string& n) { return std::find(any.begin(), any.end(), lower(n)) != any.end(); }) -
+        names.begin());
   };
   const std::size_t red = find({"r", "red"}), green = find({"g", "green"}), blue = find({"b", "blue"});
   if (red < names.size() && green < names.size() && blue < names.size()) return {{red, green, blue}, true};

@@ -27,7 +27,8 @@ Image::Image(int width, int height, Rgb8 fill_colour) : width_(width), height_(h
 void Image::blend(int x, int y, const Rgb8& colour, double opacity) {
   if (x < 0 || y < 0 || x >= width_ || y >= height_) return;
   auto& p = at(x, y);
-  for (std::size_t c = 0; c < 3; ++c) p[c] = static_cast<std::uint8_t>(std::lround(p[c] + (colour[c] - p[c]) * std::clamp(opacity, 0.0, 1.0)));
+  for (std::size_t c = 0; c < 3; ++c)
+    p[c] = static_cast<std::uint8_t>(std::lround(p[c] + (colour[c] - p[c]) * std::clamp(opacity, 0.0, 1.0)));
 }
 
 void Image::fill(int x0, int y0, int x1, int y1, const Rgb8& colour, double opacity) {
@@ -39,7 +40,8 @@ void write_png(const Image& image, const std::string& file) {
   std::string suffix = std::filesystem::path(file).extension().string();
   std::transform(suffix.begin(), suffix.end(), suffix.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   if (suffix != ".png") throw UsageError(fmt::format("{}: found the suffix '{}'; expected .png", file, suffix));
-  if (std::filesystem::is_directory(file)) throw OutputError(fmt::format("{}: found a directory; expected a file name for the picture", file));
+  if (std::filesystem::is_directory(file))
+    throw OutputError(fmt::format("{}: found a directory; expected a file name for the picture", file));
 
   std::vector<unsigned char> bytes;
   const auto append = [](void* context, void* data, int size) {

@@ -43,11 +43,13 @@ double ValueScale::position(double value) const {
 }
 
 ValueScale scale_for(std::vector<double> values, bool logarithmic) {
-  values.erase(std::remove_if(values.begin(), values.end(), [&](double v) { return !std::isfinite(v) || (logarithmic && !(v > 0)); }), values.end());
+  values.erase(std::remove_if(values.begin(), values.end(), [&](double v) { return !std::isfinite(v) || (logarithmic && !(v > 0)); }),
+               values.end());
   ValueScale scale{logarithmic ? 0.1 : 0.0, 1.0, logarithmic};
   if (values.empty()) return scale;
   scale.low = percentile(values, 0.01), scale.high = percentile(values, 0.99);
-  if (!(scale.high > scale.low)) scale.low = *std::min_element(values.begin(), values.end()), scale.high = *std::max_element(values.begin(), values.end());
+  if (!(scale.high > scale.low))
+    scale.low = *std::min_element(values.begin(), values.end()), scale.high = *std::max_element(values.begin(), values.end());
   if (logarithmic) {
     scale.low = std::max(scale.low, scale.high * 1e-4);
     if (!(scale.high > scale.low * 1.0001)) scale.low *= 0.5, scale.high *= 2;
@@ -69,19 +71,22 @@ std::vector<Tick> nice_ticks(const ValueScale& scale, int wanted) {
     for (int k = static_cast<int>(std::floor(std::log10(scale.low))); k <= static_cast<int>(std::ceil(std::log10(scale.high))); ++k)
       for (const int m : {1, 2, 5}) {
         const double v = m * std::pow(10.0, k);
-        if ((m == 1 || all) && v >= scale.low * (1 - 1e-9) && v <= scale.high * (1 + 1e-9)) ticks.push_back({v, label(v, std::pow(10.0, k))});
+        if ((m == 1 || all) && v >= scale.low * (1 - 1e-9) && v <= scale.high * (1 + 1e-9))
+          ticks.push_back({v, label(v, std::pow(10.0, k))});
       }
     return ticks;
   }
-  const double rough = (scale.high - scale.low) / std::max(1, wanted - 1), power = std::pow(10.0, std::floor(std::log10(rough))), f = rough / power;
+  const double rough = (scale.high - scale.low) / std::max(1, wanted - 1), power = std::pow(10.0, std::floor(std::log10(rough))),
+               f = rough / power;
   const double step = power * (f < 1.5 ? 1 : f < 3.5 ? 2 : f < 7.5 ? 5 : 10);
-  const auto first = static_cast<long long>(std::ceil(scale.low / step - 1e-9)), last = static_cast<long long>(std::floor(scale.high / step + 1e-9));
+  const auto first = static_cast<long long>(std::ceil(scale.low / step - 1e-9)),
+             last = static_cast<long long>(std::floor(scale.high / step + 1e-9));
   for (long long i = first; i <= last; ++i) ticks.push_back({static_cast<double>(i) * step, label(static_cast<double>(i) * step, step)});
   return ticks;
 }
 
-void draw_bar(Image& image, const Font& font, const LegendPlace& place, const std::vector<std::string>& title, ColorMap map, const ValueScale& scale,
-              bool below, bool above) {
+void draw_bar(Image& image, const Font& font, const LegendPlace& place, const std::vector<std::string>& title, ColorMap map,
+              const ValueScale& scale, bool below, bool above) {
   const int title_end = draw_title(image, font, place, title);
   const int tip = static_cast<int>(place.size * 0.8), bar = static_cast<int>(place.size * 1.2);
   const int top = title_end + tip + 2, bottom = place.top + place.height - tip - static_cast<int>(0.5 * place.size), left = place.left;
@@ -100,8 +105,8 @@ void draw_bar(Image& image, const Font& font, const LegendPlace& place, const st
   }
 }
 
-void draw_list(Image& image, const Font& font, const LegendPlace& place, const std::vector<std::string>& title, const std::vector<std::string>& names,
-               const std::vector<Rgb8>& colours) {
+void draw_list(Image& image, const Font& font, const LegendPlace& place, const std::vector<std::string>& title,
+               const std::vector<std::string>& names, const std::vector<Rgb8>& colours) {
   double y = draw_title(image, font, place, title) + 0.4 * place.size;
   const double step = 1.5 * place.size;
   const auto fits = static_cast<std::size_t>(std::max(1.0, (place.top + place.height - y) / step));
@@ -113,7 +118,8 @@ void draw_list(Image& image, const Font& font, const LegendPlace& place, const s
     while (size > 8 && font.width(names[i], size) > place.width - 1.5 * square) size *= 0.95;
     font.draw(image, place.left + 1.5 * square, y + 0.82 * place.size, names[i], size, ink);
   }
-  if (shown < names.size()) font.draw(image, place.left, y + 0.82 * place.size, fmt::format("… and {} more", names.size() - shown), place.size, ink);
+  if (shown < names.size())
+    font.draw(image, place.left, y + 0.82 * place.size, fmt::format("… and {} more", names.size() - shown), place.size, ink);
 }
 
 }  // namespace sunfleck

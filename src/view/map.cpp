@@ -13,10 +13,14 @@ namespace {
 constexpr double legend_share = 0.17;  ///< of the picture's width
 
 /// Height of a text line that suits the picture [pixels].
-double text_size(const PictureSettings& s) { return std::clamp(0.024 * std::min<double>(s.height, 0.9 * s.width), 9.0, 60.0); }
+double text_size(const PictureSettings& s) {
+  return std::clamp(0.024 * std::min<double>(s.height, 0.9 * s.width), 9.0, 60.0);
+}
 
 /// Nearly white paper, a little darker below.
-Rgb paper(const Vec3& direction) { return Rgb{0.90f} + 0.08f * static_cast<float>(std::clamp(0.5 + 0.5 * direction.z, 0.0, 1.0)); }
+Rgb paper(const Vec3& direction) {
+  return Rgb{0.90f} + 0.08f * static_cast<float>(std::clamp(0.5 + 0.5 * direction.z, 0.0, 1.0));
+}
 
 }  // namespace
 
@@ -37,7 +41,8 @@ Image draw_map(const FacetScene& scene, const FacetMap& map, const PictureSettin
     const float facing = 0.6f + 0.4f * static_cast<float>(std::fabs(cosine));
     if (hit.facet >= end) return Rgb{0.62f} * facing;
     const float value = map.sides ? map.values[2 * std::size_t{hit.facet} + (hit.front ? 0 : 1)] : map.values[hit.facet];
-    if (map.names.empty()) return decode_srgb(color_at(map.map, std::isnan(value) ? static_cast<double>(value) : map.scale.position(value)));
+    if (map.names.empty())
+      return decode_srgb(color_at(map.map, std::isnan(value) ? static_cast<double>(value) : map.scale.position(value)));
     const auto row = static_cast<std::size_t>(value);
     return row < colours.size() ? decode_srgb(colours[row]) * facing : Rgb{0.5f};
   };
@@ -66,7 +71,7 @@ Image draw_map(const FacetScene& scene, const FacetMap& map, const PictureSettin
   for (std::size_t f = 0; f < end; ++f)
     for (std::size_t s = 0; s < (map.sides ? 2u : 1u) && scene.area[f] > 0; ++s) {
       const double t = map.scale.position(map.values[map.sides ? 2 * f + s : f]);
-      below |= t < -1e-6, above |= t > 1 + 1e-6;
+      below |= t<-1e-6, above |= t> 1 + 1e-6;
     }
   draw_bar(image, font, place, map.title, map.map, map.scale, below, above);
   return image;

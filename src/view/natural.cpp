@@ -24,7 +24,8 @@ class NaturalLight {
     const std::size_t n = scene.size(), all = light.bands.size();
     if (light.irradiance.size() != 2 * n * all || scene.materials.empty()) throw Error("draw_natural: irradiance does not match the scene");
     const ColourBands chosen = light.band ? ColourBands{{*light.band, *light.band, *light.band}, false} : colour_bands(light.bands);
-    const std::vector<std::size_t> rows = chosen.measured ? std::vector<std::size_t>(chosen.rgb.begin(), chosen.rgb.end()) : std::vector{chosen.rgb[0]};
+    const std::vector<std::size_t> rows =
+        chosen.measured ? std::vector<std::size_t>(chosen.rgb.begin(), chosen.rgb.end()) : std::vector{chosen.rgb[0]};
     b_ = rows.size();
     bands_ = chosen.measured ? ColourBands{{0, 1, 2}, true} : ColourBands{};
     const auto pick = [&](const std::vector<float>& from) {
@@ -32,7 +33,8 @@ class NaturalLight {
       for (const auto r : rows) out.push_back(from[r]);
       return out;
     };
-    for (const auto& m : scene.materials) optics_.push_back({m.name, pick(m.reflectance_front), pick(m.reflectance_back), pick(m.transmittance)});
+    for (const auto& m : scene.materials)
+      optics_.push_back({m.name, pick(m.reflectance_front), pick(m.reflectance_back), pick(m.transmittance)});
     surfaces_.reserve(n);
     std::vector<std::vector<Surface>> known(scene.materials.size(), std::vector<Surface>(scene.organs.types.size()));
     for (std::size_t m = 0; m < known.size(); ++m)
@@ -130,7 +132,8 @@ class NaturalLight {
 
 /// Sky behind the scene, display light: decoration only.
 Rgb sky_behind(const Vec3& direction, bool sunny) {
-  const Rgb zenith = sunny ? Rgb{0.10f, 0.27f, 0.62f} : Rgb{0.50f, 0.55f, 0.60f}, horizon = sunny ? Rgb{0.62f, 0.77f, 0.90f} : Rgb{0.78f, 0.81f, 0.83f};
+  const Rgb zenith = sunny ? Rgb{0.10f, 0.27f, 0.62f} : Rgb{0.50f, 0.55f, 0.60f},
+            horizon = sunny ? Rgb{0.62f, 0.77f, 0.90f} : Rgb{0.78f, 0.81f, 0.83f};
   const auto up = static_cast<float>(std::max(0.0, direction.z));
   return glm::mix(horizon, zenith, std::pow(up, 0.55f));
 }
@@ -149,7 +152,8 @@ Image draw_natural(const FacetScene& scene, const FacetLight& light, const Pictu
     for (const auto& p : scene.corners[f]) ground_height = std::min(ground_height, p.z);
   if (extended) natural.prepare_open_ground();
   const bool repeated = scene.periodic && settings.infinite;
-  const double size = glm::length(scene.bounds.size()), haze_distance = 28.0 * size, clear_distance = glm::length(camera.eye() - scene.bounds.centre());
+  const double size = glm::length(scene.bounds.size()), haze_distance = 28.0 * size,
+               clear_distance = glm::length(camera.eye() - scene.bounds.centre());
   const double far = repeated ? clear_distance + 4 * haze_distance : std::numeric_limits<double>::infinity();
 
   // Exposure from a coarse grid of the same rays.

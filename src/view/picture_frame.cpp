@@ -34,8 +34,8 @@ PictureRays::PictureRays(const FacetScene& scene, bool infinite) : all_(scene) {
   cell_ = std::make_unique<RayScene>(*cell_scene_);
 }
 
-Image sample_picture(const Camera& camera, const PictureSettings& settings, const std::function<Rgb(const CameraRay&, std::uint64_t)>& shade,
-                     Progress& progress) {
+Image sample_picture(const Camera& camera, const PictureSettings& settings,
+                     const std::function<Rgb(const CameraRay&, std::uint64_t)>& shade, Progress& progress) {
   if (settings.samples < 1 || settings.samples > 4096)
     throw UsageError(fmt::format("--samples: found {}; expected 1 to 4096 per pixel", settings.samples));
   const int strata = static_cast<int>(std::ceil(std::sqrt(static_cast<double>(settings.samples)) - 1e-9));

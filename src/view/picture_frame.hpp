@@ -32,7 +32,7 @@ class PictureRays {
 
 /// Mean of `samples` stratified rays for each pixel. `shade` gets a ray and a word of random bits of its own, and returns display light
 /// in [0, 1], linear sRGB; it is called from many threads.
-Image sample_picture(const Camera& camera, const PictureSettings& settings, const std::function<Rgb(const CameraRay&, std::uint64_t)>& shade,
-                     Progress& progress);
+Image sample_picture(const Camera& camera, const PictureSettings& settings,
+                     const std::function<Rgb(const CameraRay&, std::uint64_t)>& shade, Progress& progress);
 
 }  // namespace sunfleck

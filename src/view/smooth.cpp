@@ -12,7 +12,8 @@
 
 namespace sunfleck {
 
-std::vector<float> smooth_over_organs(const FacetScene& scene, const std::vector<Vec3>& normals, const std::vector<float>& values, std::size_t width) {
+std::vector<float> smooth_over_organs(const FacetScene& scene, const std::vector<Vec3>& normals, const std::vector<float>& values,
+                                      std::size_t width) {
   struct Corner {
     std::uint64_t key;
     std::uint32_t index;  ///< 3 * facet + corner
@@ -24,7 +25,8 @@ std::vector<float> smooth_over_organs(const FacetScene& scene, const std::vector
   for (std::size_t f = 0; f < n; ++f)
     for (std::size_t c = 0; c < 3; ++c) {
       const Vec3 p = scene.corners[f][c] + 0.0;  // -0 becomes 0
-      const std::uint64_t place = mix(std::bit_cast<std::uint64_t>(p.x), std::bit_cast<std::uint64_t>(p.y), std::bit_cast<std::uint64_t>(p.z));
+      const std::uint64_t place =
+          mix(std::bit_cast<std::uint64_t>(p.x), std::bit_cast<std::uint64_t>(p.y), std::bit_cast<std::uint64_t>(p.z));
       corners[3 * f + c] = {mix(place, f >= scene.plant_facets ? ground : scene.organ[f]), static_cast<std::uint32_t>(3 * f + c)};
     }
   tbb::parallel_sort(corners.begin(), corners.end());

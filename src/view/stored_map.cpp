@@ -54,8 +54,9 @@ ValueScale chosen_scale(const FacetMap& map, const FacetScene& scene, const MapC
   if (!choice.range.empty()) {
     const bool two = choice.range.size() == 2;
     if (!two || !std::isfinite(choice.range[0]) || !std::isfinite(choice.range[1]) || !(choice.range[0] < choice.range[1]))
-      throw UsageError(two ? fmt::format("--range: found {:g} {:g}; expected two finite numbers, the lower first", choice.range[0], choice.range[1])
-                           : fmt::format("--range: found {} numbers; expected two", choice.range.size()));
+      throw UsageError(
+          two ? fmt::format("--range: found {:g} {:g}; expected two finite numbers, the lower first", choice.range[0], choice.range[1])
+              : fmt::format("--range: found {} numbers; expected two", choice.range.size()));
     if (choice.logarithmic && !(choice.range[0] > 0))
       throw UsageError(fmt::format("--range: found {:g} with --log; expected numbers above zero", choice.range[0]));
     return {choice.range[0], choice.range[1], choice.logarithmic};
@@ -69,7 +70,8 @@ ValueScale chosen_scale(const FacetMap& map, const FacetScene& scene, const MapC
 }
 
 /// Names in the order in which they first appear on what is drawn, so that the legend lists nothing that is not there.
-void name_rows(FacetMap& map, const FacetScene& scene, const std::vector<std::uint32_t>& row_of_organ, const std::vector<std::string>& names) {
+void name_rows(FacetMap& map, const FacetScene& scene, const std::vector<std::uint32_t>& row_of_organ,
+               const std::vector<std::string>& names) {
   std::vector<std::uint32_t> shown(names.size(), no_parent);
   map.values.resize(scene.size());
   for (std::size_t f = 0; f < scene.size(); ++f) {
@@ -85,10 +87,24 @@ void name_rows(FacetMap& map, const FacetScene& scene, const std::vector<std::ui
 }  // namespace
 
 const std::vector<std::string>& quantity_names() {
-  static const std::vector<std::string> names{"colour",        "absorbed",    "irradiance",     "irradiance_front", "irradiance_back",
-                                              "sunlit",        "sunlit_front", "sunlit_back",   "organ_absorbed",   "organ_irradiance",
-                                              "organ_sunlit",  "area",        "height",         "organ",            "type",
-                                              "plant",         "placement",   "optics"};
+  static const std::vector<std::string> names{"colour",
+                                              "absorbed",
+                                              "irradiance",
+                                              "irradiance_front",
+                                              "irradiance_back",
+                                              "sunlit",
+                                              "sunlit_front",
+                                              "sunlit_back",
+                                              "organ_absorbed",
+                                              "organ_irradiance",
+                                              "organ_sunlit",
+                                              "area",
+                                              "height",
+                                              "organ",
+                                              "type",
+                                              "plant",
+                                              "placement",
+                                              "optics"};
   return names;
 }
 

@@ -26,10 +26,12 @@ std::vector<std::uint32_t> derived_organs(const Result& result, const ResultGeom
       out.insert(out.end(), shape.triangle_count, organ);
     }
   }
-  const std::size_t left = result.organ_count() - std::min<std::size_t>(next, result.organ_count()), ground = geometry.ground.triangles.size();
+  const std::size_t left = result.organ_count() - std::min<std::size_t>(next, result.organ_count()),
+                    ground = geometry.ground.triangles.size();
   for (std::size_t t = 0; t < ground; ++t) out.push_back(next + static_cast<std::uint32_t>(left == 1 ? 0 : t / 2));
   if (out.size() != geometry.facet_count() || (!out.empty() && *std::max_element(out.begin(), out.end()) >= result.organ_count()))
-    throw InputError(location(result.file(), 0, "geometry"), "shapes that do not match the organs", "facets that belong to the rows of /organs");
+    throw InputError(location(result.file(), 0, "geometry"), "shapes that do not match the organs",
+                     "facets that belong to the rows of /organs");
   return out;
 }
 
@@ -101,12 +103,14 @@ FacetLight stored_light(const Result& result, const FacetScene& scene, std::size
     return light;
   }
   if (!result.has("organs/irradiance"))
-    throw InputError(location(result.file(), 0, "facets/irradiance"), "nothing", "irradiance of facets or organs; [output] of the scene left both out");
+    throw InputError(location(result.file(), 0, "facets/irradiance"), "nothing",
+                     "irradiance of facets or organs; [output] of the scene left both out");
   // The mean of an organ says nothing about where the sun falls on it: no sharp beam.
   const auto organs = result.state_rows<float>("organs/irradiance", state, 0, result.organ_count());
   light.irradiance.resize(2 * n * b);
   for (std::size_t f = 0; f < n; ++f)
-    std::copy_n(organs.begin() + static_cast<std::ptrdiff_t>(2 * b * scene.organ[f]), 2 * b, light.irradiance.begin() + static_cast<std::ptrdiff_t>(2 * b * f));
+    std::copy_n(organs.begin() + static_cast<std::ptrdiff_t>(2 * b * scene.organ[f]), 2 * b,
+                light.irradiance.begin() + static_cast<std::ptrdiff_t>(2 * b * f));
   return light;
 }
 

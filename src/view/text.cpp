@@ -89,8 +89,12 @@ Font::Font(std::unique_ptr<Outlines> outlines) : outlines_(std::move(outlines)) 
 Font::~Font() = default;
 Font::Font(Font&&) noexcept = default;
 Font& Font::operator=(Font&&) noexcept = default;
-Font Font::plain() { return Font(std::unique_ptr<Outlines>{}); }
-bool Font::outlines() const { return outlines_ != nullptr; }
+Font Font::plain() {
+  return Font(std::unique_ptr<Outlines>{});
+}
+bool Font::outlines() const {
+  return outlines_ != nullptr;
+}
 
 double Font::width(std::string_view text, double size) const {
   if (!outlines_) {
@@ -143,7 +147,8 @@ void Font::draw(Image& image, double x, double y, std::string_view text, double 
       stbtt_MakeCodepointBitmapSubpixel(&outlines_->info, glyph.data(), w, h, w, scale, scale, shift_x, shift_y, p);
       for (int j = 0; j < h; ++j)
         for (int i = 0; i < w; ++i)
-          image.blend(static_cast<int>(whole_x) + x0 + i, static_cast<int>(whole_y) + y0 + j, colour, glyph[static_cast<std::size_t>(j * w + i)] / 255.0);
+          image.blend(static_cast<int>(whole_x) + x0 + i, static_cast<int>(whole_y) + y0 + j, colour,
+                      glyph[static_cast<std::size_t>(j * w + i)] / 255.0);
     }
     int advance = 0, bearing = 0;
     stbtt_GetCodepointHMetrics(&outlines_->info, p, &advance, &bearing);

@@ -22,7 +22,9 @@ void write_result(const std::string& file, bool with_irradiance = true) {
   writer.finish(small_report());
 }
 
-bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
 
 }  // namespace
 
@@ -32,7 +34,8 @@ TEST_CASE("render refuses what cannot be and writes nothing", "[cli][view]") {
   write_result(result);
   const std::vector<std::pair<std::vector<std::string>, std::string>> wrong{
       {{"--quantity", "absorbd"}, "(did you mean 'absorbed'?)"},
-      {{"--quantity", "absorbed", "--band", "PAT"}, "--band: found 'PAT'; expected one of those in " + result + ": PAR, NIR (did you mean 'PAR'?)"},
+      {{"--quantity", "absorbed", "--band", "PAT"},
+       "--band: found 'PAT'; expected one of those in " + result + ": PAR, NIR (did you mean 'PAR'?)"},
       {{"--state", "nooon"}, "(did you mean 'noon'?)"},
       {{"--colormap", "virdis"}, "(did you mean 'viridis'?)"},
       {{"--quantity", "absorbed", "--range", "5", "1"}, "--range: found 5 1; expected two finite numbers, the lower first"},

@@ -25,7 +25,8 @@ TEST_CASE("a picture is written as PNG, complete or not at all", "[view]") {
   REQUIRE(bytes.substr(0, 8) == "\x89PNG\r\n\x1a\n");
   REQUIRE(bytes.substr(16, 8) == std::string("\0\0\0\3\0\0\0\2", 8));  // width, height
 
-  REQUIRE_THROWS_WITH(write_png(image, (folder / "a.jpg").string()), (folder / "a.jpg").string() + ": found the suffix '.jpg'; expected .png");
+  REQUIRE_THROWS_WITH(write_png(image, (folder / "a.jpg").string()),
+                      (folder / "a.jpg").string() + ": found the suffix '.jpg'; expected .png");
   REQUIRE_THROWS_AS(write_png(image, (folder / "none" / "a.png").string()), OutputError);
   std::filesystem::create_directories(folder / "folder.png");
   REQUIRE_THROWS_AS(write_png(image, (folder / "folder.png").string()), OutputError);

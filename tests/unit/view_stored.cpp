@@ -118,8 +118,9 @@ TEST_CASE("names that the file does not hold are refused with the nearest one", 
   REQUIRE(band_row(result, result.bands().back()) == result.bands().size() - 1);
   REQUIRE(state_row(result, "1") == 0);
   REQUIRE(state_row(result, result.states().back().name) == result.states().size() - 1);
-  REQUIRE_THROWS_WITH(band_row(result, "PAT"), Catch::Matchers::StartsWith("--band: found 'PAT'; expected one of those in " + file + ": ") &&
-                                                   Catch::Matchers::EndsWith("(did you mean 'PAR'?)"));
+  REQUIRE_THROWS_WITH(band_row(result, "PAT"),
+                      Catch::Matchers::StartsWith("--band: found 'PAT'; expected one of those in " + file + ": ") &&
+                          Catch::Matchers::EndsWith("(did you mean 'PAR'?)"));
   REQUIRE_THROWS_WITH(state_row(result, "99"), Catch::Matchers::StartsWith("--state: found '99'; expected one of those in " + file + ": "));
   MapChoice choice;
   choice.quantity = "absorbd";
@@ -136,7 +137,8 @@ TEST_CASE("a file without the quantity asked for says so", "[view][result]") {
   scene.output.fields = {"organs/absorbed", "geometry"};
   const Result result(stored(folder, scene, expand(scene)));
   const FacetScene read = stored_scene(result);
-  REQUIRE_THROWS_WITH(stored_light(result, read, 0), Catch::Matchers::EndsWith("expected irradiance of facets or organs; [output] of the scene left both out"));
+  REQUIRE_THROWS_WITH(stored_light(result, read, 0),
+                      Catch::Matchers::EndsWith("expected irradiance of facets or organs; [output] of the scene left both out"));
   MapChoice choice;
   choice.quantity = "sunlit";
   REQUIRE_THROWS_AS(stored_map(result, read, choice), InputError);

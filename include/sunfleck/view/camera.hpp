@@ -17,10 +17,10 @@ struct CameraRay {
 struct CameraChoice {
   std::optional<Vec3> eye = std::nullopt;     ///< [m]
   std::optional<Vec3> target = std::nullopt;  ///< point that appears in the middle [m]
-  double azimuth_deg = 150.0;           ///< where the camera stands, seen from the scene: from north over east (135 = south-east)
-  double elevation_deg = 25.0;          ///< of the camera above the horizon, in [-90, 90]
-  double field_of_view_deg = 35.0;      ///< full vertical angle, in (0, 170]; for a perspective only
-  bool orthographic = false;            ///< parallel projection
+  double azimuth_deg = 150.0;                 ///< where the camera stands, seen from the scene: from north over east (135 = south-east)
+  double elevation_deg = 25.0;                ///< of the camera above the horizon, in [-90, 90]
+  double field_of_view_deg = 35.0;            ///< full vertical angle, in (0, 170]; for a perspective only
+  bool orthographic = false;                  ///< parallel projection
 };
 
 /// Part of the picture that the framed points must lie in, as fractions from its left and top edges.
@@ -33,8 +33,8 @@ class Camera {
  public:
   /// Stands at the chosen eye, or, where none is given, as near as possible along the chosen azimuth and elevation such that
   /// all points appear inside the frame (exact: each side of the view pyramid is a half-space bound on the eye). With a target
-  /// and no eye, the target is in the middle and the points are inside the frame. Throws UsageError where eye and target coincide, an angle is
-  /// out of range, or a value is not finite.
+  /// and no eye, the target is in the middle and the points are inside the frame. Throws UsageError where eye and target coincide, an angle
+  /// is out of range, or a value is not finite.
   Camera(const CameraChoice& choice, std::span<const Vec3> points, double aspect, const Frame& frame = {});
 
   CameraRay ray(double x, double y) const;

@@ -11,7 +11,8 @@ namespace sunfleck {
 
 /// viridis, magma, inferno: van der Walt & Smith 2015 (bids.github.io/colormap); cividis, made for colour-deficient viewers:
 /// Nunez, Anderton & Renslow 2018, doi:10.1371/journal.pone.0199239; grey: linear in sRGB code.
-/// Stored as our own Chebyshev fits of degree 8 to the published tables: within 2 (viridis), 3 (magma), 4 (inferno) and 7 (cividis) of 255 codes.
+/// Stored as our own Chebyshev fits of degree 8 to the published tables: within 2 (viridis), 3 (magma), 4 (inferno) and 7 (cividis) of 255
+/// codes.
 enum class ColorMap : std::uint8_t { viridis, magma, inferno, cividis, grey };
 
 /// Throws UsageError with the nearest name for anything else.
@@ -21,8 +22,8 @@ const std::vector<std::string>& color_map_names();
 /// Display colour (sRGB codes) at t, clamped to [0, 1]; NaN gives mid-grey.
 Rgb8 color_at(ColorMap map, double t);
 
-/// Distinct colour of row k of a list of names: fixed colours that colour-deficient viewers tell apart for the first eight (Okabe & Ito 2008,
-/// jfly.uni-koeln.de/color), then hues by the golden angle at three lightnesses.
+/// Distinct colour of row k of a list of names: fixed colours that colour-deficient viewers tell apart for the first eight (Okabe & Ito
+/// 2008, jfly.uni-koeln.de/color), then hues by the golden angle at three lightnesses.
 Rgb8 category_color(std::size_t k);
 
 }  // namespace sunfleck

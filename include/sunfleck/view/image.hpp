@@ -14,7 +14,9 @@ class Image {
   int width() const { return width_; }
   int height() const { return height_; }
   Rgb8& at(int x, int y) { return pixels_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x)]; }
-  const Rgb8& at(int x, int y) const { return pixels_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x)]; }
+  const Rgb8& at(int x, int y) const {
+    return pixels_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x)];
+  }
   const Rgb8* data() const { return pixels_.data(); }
 
   /// Mixes a colour into a pixel; nothing happens outside the picture. opacity in [0, 1].
