@@ -79,7 +79,8 @@ inline Scene small_scene(std::uint32_t leaves = 3) {
   std::vector<std::uint32_t> optics(plant->shapes.size(), 0);
   optics[0] = 1;
   const Affine mirror{Mat3{Vec3{-1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}, Vec3{0.0}};
-  scene.plants.push_back({"shrub", plant, optics, "", {{Affine::translate({1, 2, 0}) * Affine::turn(0.3)}, {Affine::translate({-1, 0, 0}) * mirror}}});
+  scene.plants.push_back(
+      {"shrub", plant, optics, "", {{Affine::translate({1, 2, 0}) * Affine::turn(0.3)}, {Affine::translate({-1, 0, 0}) * mirror}}});
   scene.plants.push_back({"dark", plant, std::vector<std::uint32_t>(plant->shapes.size(), 1), "", {}});
   GroupEntry row;
   row.name = "row";
@@ -97,9 +98,12 @@ inline Scene small_scene(std::uint32_t leaves = 3) {
 /// Values that differ in every index.
 struct Values {
   explicit Values(const FacetScene& facets, std::size_t state_count = 2) : n(facets.size()), b(facets.bands), states(state_count) {
-    for (std::size_t i = 0; i < states * n * 2 * b; ++i) irradiance.push_back(static_cast<float>(100.0 + 50.0 * std::sin(0.37 * static_cast<double>(i))));
-    for (std::size_t i = 0; i < states * n * 2; ++i) sunlit.push_back(static_cast<float>(0.5 + 0.5 * std::cos(0.11 * static_cast<double>(i))));
-    for (std::size_t i = 0; i < states * n * b; ++i) variance.push_back(static_cast<float>(1.0 + 0.5 * std::cos(0.17 * static_cast<double>(i))));
+    for (std::size_t i = 0; i < states * n * 2 * b; ++i)
+      irradiance.push_back(static_cast<float>(100.0 + 50.0 * std::sin(0.37 * static_cast<double>(i))));
+    for (std::size_t i = 0; i < states * n * 2; ++i)
+      sunlit.push_back(static_cast<float>(0.5 + 0.5 * std::cos(0.11 * static_cast<double>(i))));
+    for (std::size_t i = 0; i < states * n * b; ++i)
+      variance.push_back(static_cast<float>(1.0 + 0.5 * std::cos(0.17 * static_cast<double>(i))));
   }
 
   /// Hands them over in pieces of `piece` facets.

@@ -16,17 +16,25 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 const std::vector<std::string>& datasets() {
-  static const std::vector<std::string> names{"facets/irradiance", "facets/absorbed",  "facets/sunlit",   "facets/area",     "facets/centroid", "facets/organ",
-                                              "organs/irradiance", "organs/absorbed", "organs/sunlit",   "organs/area",     "variance/facets", "variance/organs"};
+  static const std::vector<std::string> names{"facets/irradiance", "facets/absorbed", "facets/sunlit",     "facets/area",
+                                              "facets/centroid",   "facets/organ",    "organs/irradiance", "organs/absorbed",
+                                              "organs/sunlit",     "organs/area",     "variance/facets",   "variance/organs"};
   return names;
 }
 
-std::string shape_text(const std::vector<std::size_t>& dims) { return fmt::format("[{}]", fmt::join(dims, ", ")); }
+std::string shape_text(const std::vector<std::size_t>& dims) {
+  return fmt::format("[{}]", fmt::join(dims, ", "));
+}
 
 Json json_of(const Result& r) {
   const auto& header = r.header();
-  Json json{{"file", r.file()}, {"kind", "result"}, {"method", header.method}, {"status", header.status}, {"software_version", header.software_version},
-            {"scene_file", header.scene_file}, {"scene_sha256", header.scene_sha256}};
+  Json json{{"file", r.file()},
+            {"kind", "result"},
+            {"method", header.method},
+            {"status", header.status},
+            {"software_version", header.software_version},
+            {"scene_file", header.scene_file},
+            {"scene_sha256", header.scene_sha256}};
   json["bands"] = Json::array();
   for (std::size_t b = 0; b < r.bands().size(); ++b) json["bands"].push_back({{"name", r.bands()[b]}, {"unit", r.band_units()[b]}});
   const auto balance = r.balance();
@@ -34,11 +42,14 @@ Json json_of(const Result& r) {
   for (std::size_t s = 0; s < r.states().size(); ++s) {
     const auto& state = r.states()[s];
     Json row{{"name", state.name}, {"duration_s", state.duration_s}};
-    if (state.sun) row["sun"] = {{"direction", {state.sun->direction.x, state.sun->direction.y, state.sun->direction.z}}, {"irradiance", state.sun->irradiance}};
+    if (state.sun)
+      row["sun"] = {{"direction", {state.sun->direction.x, state.sun->direction.y, state.sun->direction.z}},
+                    {"irradiance", state.sun->irradiance}};
     if (state.sky) row["sky"] = {{"model", name_of(state.sky->model)}, {"irradiance", state.sky->irradiance}};
     for (std::size_t b = 0; b < r.bands().size(); ++b) {
       const auto& x = balance[s][b];
-      row["balance"][r.bands()[b]] = {{"incident", x.incident}, {"leaves", x.leaves}, {"ground", x.ground}, {"escaped", x.escaped}, {"residual", x.residual()}};
+      row["balance"][r.bands()[b]] = {
+          {"incident", x.incident}, {"leaves", x.leaves}, {"ground", x.ground}, {"escaped", x.escaped}, {"residual", x.residual()}};
     }
     json["states"].push_back(row);
   }
@@ -46,7 +57,9 @@ Json json_of(const Result& r) {
   json["organs"] = r.organ_count();
   for (const auto& name : datasets())
     if (r.has(name)) json["datasets"][name] = r.shape(name);
-  if (const auto c = r.certificate()) json["certificate"] = {{"organs", c->organs.size()}, {"rmse", c->rmse}, {"rmse_low", c->rmse_low}, {"rmse_high", c->rmse_high}, {"bias", c->bias}};
+  if (const auto c = r.certificate())
+    json["certificate"] = {
+        {"organs", c->organs.size()}, {"rmse", c->rmse}, {"rmse_low", c->rmse_low}, {"rmse_high", c->rmse_high}, {"bias", c->bias}};
   const auto convergence = r.convergence();
   if (!convergence.empty()) json["residual"] = convergence.back().residual;
   for (const auto& [name, value] : r.counts()) json["counts"][name] = value;
@@ -59,10 +72,14 @@ void print_states(const Result& r) {
   for (std::size_t s = 0; s < r.states().size(); ++s) {
     const auto& state = r.states()[s];
     std::string light;
-    if (state.sun) light += fmt::format("sun from ({:.3f}, {:.3f}, {:.3f}) {:g}", state.sun->direction.x, state.sun->direction.y, state.sun->direction.z, fmt::join(state.sun->irradiance, " / "));
-    if (state.sky) light += fmt::format("{}sky {} {:g}", light.empty() ? "" : ", ", name_of(state.sky->model), fmt::join(state.sky->irradiance, " / "));
+    if (state.sun)
+      light += fmt::format("sun from ({:.3f}, {:.3f}, {:.3f}) {:g}", state.sun->direction.x, state.sun->direction.y, state.sun->direction.z,
+                           fmt::join(state.sun->irradiance, " / "));
+    if (state.sky)
+      light += fmt::format("{}sky {} {:g}", light.empty() ? "" : ", ", name_of(state.sky->model), fmt::join(state.sky->irradiance, " / "));
     const std::string duration = state.duration_s > 0 ? fmt::format(", {:g} s", state.duration_s) : "";
-    fmt::print("{:<11}{}: {}{}\n", s == 0 ? "states" : "", state.name.empty() ? "(no name)" : state.name, light.empty() ? "dark" : light, duration);
+    fmt::print("{:<11}{}: {}{}\n", s == 0 ? "states" : "", state.name.empty() ? "(no name)" : state.name, light.empty() ? "dark" : light,
+               duration);
   }
 }
 
@@ -75,8 +92,8 @@ void print_result_info(const std::string& file, bool json) {
     return;
   }
   const auto& header = r.header();
-  fmt::print("result     {}\nscene      {}\nmethod     {}, {} (Sunfleck {})\n", file, header.scene_file.empty() ? "made in memory" : header.scene_file, header.method, header.status,
-             header.software_version);
+  fmt::print("result     {}\nscene      {}\nmethod     {}, {} (Sunfleck {})\n", file,
+             header.scene_file.empty() ? "made in memory" : header.scene_file, header.method, header.status, header.software_version);
   for (std::size_t b = 0; b < r.bands().size(); ++b) fmt::print("{:<11}{} in {}\n", b == 0 ? "bands" : "", r.bands()[b], r.band_units()[b]);
   print_states(r);
   fmt::print("facets     {}\norgans     {}\n", r.facet_count() > 0 ? std::to_string(r.facet_count()) : "not kept", r.organ_count());

@@ -13,8 +13,8 @@ nlohmann::ordered_json json_of(const std::vector<BandError>& errors, const std::
   auto json = nlohmann::ordered_json::object();
   for (std::size_t b = 0; b < bands.size(); ++b) {
     const auto& e = errors[b];
-    json[bands[b]] = {{"bias", e.bias},   {"rmse", e.rmse},   {"maximum", e.maximum},
-                      {"noise", e.noise}, {"mean", e.mean},   {"quantity", e.irradiance ? "irradiance" : "absorbed"},
+    json[bands[b]] = {{"bias", e.bias},   {"rmse", e.rmse}, {"maximum", e.maximum},
+                      {"noise", e.noise}, {"mean", e.mean}, {"quantity", e.irradiance ? "irradiance" : "absorbed"},
                       {"count", e.count}};
   }
   return json;
@@ -23,15 +23,16 @@ nlohmann::ordered_json json_of(const std::vector<BandError>& errors, const std::
 void print_rows(const std::string& state, const std::vector<BandError>& errors, const Result& reference) {
   for (std::size_t b = 0; b < errors.size(); ++b) {
     const auto& e = errors[b];
-    fmt::print("  {:<12} {:<8} {:>+9.3f} % {:>9.3f} % {:>9.3f} % {:>9.3f} %  {:>11.5g} {}{}\n", state, reference.bands()[b], 100 * e.bias, 100 * e.rmse,
-               100 * e.maximum, 100 * e.noise, e.mean, reference.band_units()[b], e.irradiance ? " (irradiance: next to nothing is absorbed)" : "");
+    fmt::print("  {:<12} {:<8} {:>+9.3f} % {:>9.3f} % {:>9.3f} % {:>9.3f} %  {:>11.5g} {}{}\n", state, reference.bands()[b], 100 * e.bias,
+               100 * e.rmse, 100 * e.maximum, 100 * e.noise, e.mean, reference.band_units()[b],
+               e.irradiance ? " (irradiance: next to nothing is absorbed)" : "");
   }
 }
 
 void print_table(const char* what, const ErrorTable& table, const Result& reference) {
   const std::size_t states = table.states.size();
-  fmt::print("{} ({} compared)\n  {:<12} {:<8} {:>11} {:>11} {:>11} {:>11}  {:>11}\n", what, table.overall[0].count / states, "state", "band", "bias", "rmse", "maximum",
-             "noise", "mean");
+  fmt::print("{} ({} compared)\n  {:<12} {:<8} {:>11} {:>11} {:>11} {:>11}  {:>11}\n", what, table.overall[0].count / states, "state",
+             "band", "bias", "rmse", "maximum", "noise", "mean");
   if (states > 1)
     for (std::size_t s = 0; s < states; ++s) print_rows(reference.states()[s].name, table.states[s], reference);
   print_rows("all", table.overall, reference);
@@ -60,8 +61,10 @@ int verb_compare(const CompareOptions& options, Progress&) {
     fmt::print("{}\n", json.dump(2));
     return 0;
   }
-  fmt::print("result     {} ({})\nreference  {} ({})\n", options.result, result.header().method, options.reference, reference.header().method);
-  fmt::print("Absorbed power per area, area-weighted, over the reference's mean; the reference's noise is taken out of rmse, not of maximum.\n\n");
+  fmt::print("result     {} ({})\nreference  {} ({})\n", options.result, result.header().method, options.reference,
+             reference.header().method);
+  fmt::print(
+      "Absorbed power per area, area-weighted, over the reference's mean; the reference's noise is taken out of rmse, not of maximum.\n\n");
   print_table("per organ", c.organs, reference);
   if (c.facets.empty())
     fmt::print("\nper facet: not compared, since not both files keep facets\n");

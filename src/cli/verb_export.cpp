@@ -26,7 +26,8 @@ int verb_export(const ExportOptions& options, Progress& progress) {
   std::string suffix = std::filesystem::path(options.output).extension().string();
   std::transform(suffix.begin(), suffix.end(), suffix.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   if (suffix == ".csv") {
-    if (options.quantity || options.band || options.state) throw UsageError("--quantity, --band, --state: a table holds them all; they belong to meshes");
+    if (options.quantity || options.band || options.state)
+      throw UsageError("--quantity, --band, --state: a table holds them all; they belong to meshes");
     export_csv(result, options.output, progress);
     progress.line(fmt::format("wrote {}: {} organs", options.output, result.organ_count()));
     return 0;

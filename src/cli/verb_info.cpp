@@ -28,10 +28,22 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json json_of(const PlantSummary& p) {
-  Json json{{"file", p.file}, {"kind", "plant"}, {"name", p.name}, {"structures", p.structures}, {"organs", p.organs}, {"facets", p.facets},
-            {"zero_area_facets", p.zero_area_facets}, {"area_m2", p.area_m2}, {"meshes", p.meshes}, {"shapes", p.shapes}, {"materials", p.materials}, {"attributes", p.attributes}};
-  for (const auto& t : p.types) json["types"][t.type] = {{"structures", t.structures}, {"organs", t.organs}, {"facets", t.facets}, {"area_m2", t.area_m2}};
-  if (!p.bounds.empty()) json["bounds_m"] = {{p.bounds.low.x, p.bounds.low.y, p.bounds.low.z}, {p.bounds.high.x, p.bounds.high.y, p.bounds.high.z}};
+  Json json{{"file", p.file},
+            {"kind", "plant"},
+            {"name", p.name},
+            {"structures", p.structures},
+            {"organs", p.organs},
+            {"facets", p.facets},
+            {"zero_area_facets", p.zero_area_facets},
+            {"area_m2", p.area_m2},
+            {"meshes", p.meshes},
+            {"shapes", p.shapes},
+            {"materials", p.materials},
+            {"attributes", p.attributes}};
+  for (const auto& t : p.types)
+    json["types"][t.type] = {{"structures", t.structures}, {"organs", t.organs}, {"facets", t.facets}, {"area_m2", t.area_m2}};
+  if (!p.bounds.empty())
+    json["bounds_m"] = {{p.bounds.low.x, p.bounds.low.y, p.bounds.low.z}, {p.bounds.high.x, p.bounds.high.y, p.bounds.high.z}};
   return json;
 }
 
@@ -44,22 +56,32 @@ void species_info(const std::string& file, bool json) {
   const Species species = read_species(file);
   const auto summary = summarize_plant(read_species_plant(file));
   if (json) {
-    Json out{{"file", file}, {"kind", "species"}, {"name", species.name}, {"age", species.age}, {"age_unit", species.age_unit}, {"seed", species.seed}};
+    Json out{{"file", file},        {"kind", "species"}, {"name", species.name}, {"age", species.age}, {"age_unit", species.age_unit},
+             {"seed", species.seed}};
     out["plant"] = json_of(summary);
     fmt::print("{}\n", out.dump(2));
     return;
   }
-  fmt::print("species    {} ({})\ngrown to   {} {}, seed {}\n{}", species.name, file, species.age, species.age_unit, species.seed, describe_plant(summary));
+  fmt::print("species    {} ({})\ngrown to   {} {}, seed {}\n{}", species.name, file, species.age, species.age_unit, species.seed,
+             describe_plant(summary));
 }
 
 void scene_info(const std::string& file, bool json) {
   const Scene scene = read_scene(file);
   const SceneCounts counts = count(scene);
   if (json) {
-    Json out{{"file", file}, {"kind", "scene"}, {"bands", scene.bands}, {"plant_facets", counts.plant_facets}, {"ground_facets", counts.ground_facets}, {"organs", counts.organs}};
+    Json out{{"file", file},
+             {"kind", "scene"},
+             {"bands", scene.bands},
+             {"plant_facets", counts.plant_facets},
+             {"ground_facets", counts.ground_facets},
+             {"organs", counts.organs}};
     for (const auto& state : scene.states) out["states"].push_back(state.name);
     for (std::size_t p = 0; p < scene.plants.size(); ++p)
-      out["plants"].push_back({{"name", scene.plants[p].name}, {"file", scene.plants[p].plant->file}, {"facets", scene.plants[p].plant->facet_count()}, {"copies", counts.copies[p]}});
+      out["plants"].push_back({{"name", scene.plants[p].name},
+                               {"file", scene.plants[p].plant->file},
+                               {"facets", scene.plants[p].plant->facet_count()},
+                               {"copies", counts.copies[p]}});
     if (scene.periodic) out["periodic"] = {scene.periodic->x_low, scene.periodic->y_low, scene.periodic->x_high, scene.periodic->y_high};
     out["notes"] = scene.notes;
     fmt::print("{}\n", out.dump(2));

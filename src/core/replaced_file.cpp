@@ -25,7 +25,8 @@ ReplacedFile::ReplacedFile(const std::string& path) : path_(path), target_(path)
   if (path.empty()) throw UsageError("the name of an output file is empty");
   if (fs::is_symlink(path, error)) target_ = fs::weakly_canonical(path, error).string();
   if (fs::is_directory(target_, error)) fail(EISDIR);
-  if (fs::exists(target_, error) && !fs::is_regular_file(target_, error)) throw OutputError(path_ + ": cannot be written: it is a device or a pipe, no file");
+  if (fs::exists(target_, error) && !fs::is_regular_file(target_, error))
+    throw OutputError(path_ + ": cannot be written: it is a device or a pipe, no file");
   const fs::path place(target_);
   temporary_ = (place.parent_path() / ("." + place.filename().string() + ".partial-" + std::to_string(::getpid()))).string();
   ::unlink(temporary_.c_str());
@@ -38,7 +39,9 @@ ReplacedFile::~ReplacedFile() {
   if (!committed_) ::unlink(temporary_.c_str());
 }
 
-void ReplacedFile::fail(int error) const { throw OutputError(path_ + ": cannot be written: " + std::strerror(error)); }
+void ReplacedFile::fail(int error) const {
+  throw OutputError(path_ + ": cannot be written: " + std::strerror(error));
+}
 
 void ReplacedFile::write(const void* bytes, std::size_t count) {
   buffer_.append(static_cast<const char*>(bytes), count);

@@ -56,7 +56,8 @@ struct Sums {
 
 class Comparing {
  public:
-  Comparing(const Result& result, const Result& reference) : x_(result), r_(reference), states_(reference.states().size()), bands_(reference.bands().size()) {
+  Comparing(const Result& result, const Result& reference)
+      : x_(result), r_(reference), states_(reference.states().size()), bands_(reference.bands().size()) {
     check_same_scene();
     choose_quantities();
   }
@@ -76,7 +77,8 @@ class Comparing {
     const auto structure = r_.rows<std::uint32_t>("organs/structure", 0, r_.organ_count());
     const auto area = r_.rows<float>("facets/area", 0, n);
     const auto organ = r_.facet_organs(0, n);
-    return table("facets", "variance/facets", n, false, [&](std::size_t f) { return structure[organ[f]] == no_parent ? 0.0 : double{area[f]}; });
+    return table("facets", "variance/facets", n, false,
+                 [&](std::size_t f) { return structure[organ[f]] == no_parent ? 0.0 : double{area[f]}; });
   }
 
  private:
@@ -92,7 +94,8 @@ class Comparing {
       differ(fmt::format("{} facets", x_.facet_count()), fmt::format("{}", r_.facet_count()));
     const auto a = x_.rows<float>("organs/area", 0, x_.organ_count()), b = r_.rows<float>("organs/area", 0, r_.organ_count());
     for (std::size_t o = 0; o < a.size(); ++o)
-      if (std::abs(a[o] - b[o]) > 1e-4f * std::max(a[o], b[o])) differ(fmt::format("organ {} with an area of {} m^2", o, a[o]), fmt::format("{} m^2", b[o]));
+      if (std::abs(a[o] - b[o]) > 1e-4f * std::max(a[o], b[o]))
+        differ(fmt::format("organ {} with an area of {} m^2", o, a[o]), fmt::format("{} m^2", b[o]));
   }
 
   /// Absorbed or irradiance, per state and band and for all states together.
@@ -127,7 +130,8 @@ class Comparing {
         const auto x = read(x_, group + "/absorbed"), r = read(r_, group + "/absorbed");
         std::vector<float> no_values;
         const auto var_x = x_.has(variance) ? read(x_, variance) : no_values, var_r = r_.has(variance) ? read(r_, variance) : no_values;
-        const auto e_x = any_irradiance_ ? read(x_, group + "/irradiance") : no_values, e_r = any_irradiance_ ? read(r_, group + "/irradiance") : no_values;
+        const auto e_x = any_irradiance_ ? read(x_, group + "/irradiance") : no_values,
+                   e_r = any_irradiance_ ? read(r_, group + "/irradiance") : no_values;
         for (std::size_t i = 0; i < count; ++i) {
           const double w = weight(first + i);
           if (w <= 0) continue;

@@ -77,7 +77,8 @@ const DatasetReader::Dataset& DatasetReader::open(const std::string& name) const
   const auto stored = static_cast<double>(H5Dget_storage_size(d.id.get()));
   const bool may_be_unwritten = name.ends_with("sunlit");  // no sun: zeros that take no room; its rows are checked against the others
   if (claimed > most_inflated * stored + 4096.0 && !(may_be_unwritten && stored == 0.0))
-    fail(name, shape_text(d.dims) + " values in " + std::to_string(static_cast<std::uint64_t>(stored)) + " bytes", "a size that fits what is stored");
+    fail(name, shape_text(d.dims) + " values in " + std::to_string(static_cast<std::uint64_t>(stored)) + " bytes",
+         "a size that fits what is stored");
   if (H5Pget_layout(properties.get()) == H5D_CHUNKED && rank > 0) {
     std::vector<hsize_t> chunk(dims.size());
     double bytes = static_cast<double>(d.element_size);
@@ -99,7 +100,8 @@ void DatasetReader::expect(const std::string& name, const std::vector<std::size_
 }
 
 template <class T>
-std::vector<T> DatasetReader::block(const std::string& name, const std::vector<std::size_t>& outer, std::size_t first, std::size_t count) const {
+std::vector<T> DatasetReader::block(const std::string& name, const std::vector<std::size_t>& outer, std::size_t first,
+                                    std::size_t count) const {
   const Quiet quiet;
   const auto& d = open(name);
   if (d.type != H5T_FLOAT && d.type != H5T_INTEGER) fail(name, "text or another type", "numbers");
@@ -137,8 +139,8 @@ std::vector<T> DatasetReader::all(const std::string& name) const {
   return block<T>(name, {}, 0, d.dims[0]);
 }
 
-#define SUNFLECK_INSTANTIATE(T)                                                                                                                       \
-  template std::vector<T> DatasetReader::block<T>(const std::string&, const std::vector<std::size_t>&, std::size_t, std::size_t) const;               \
+#define SUNFLECK_INSTANTIATE(T)                                                                                                         \
+  template std::vector<T> DatasetReader::block<T>(const std::string&, const std::vector<std::size_t>&, std::size_t, std::size_t) const; \
   template std::vector<T> DatasetReader::all<T>(const std::string&) const;
 SUNFLECK_INSTANTIATE(float)
 SUNFLECK_INSTANTIATE(double)

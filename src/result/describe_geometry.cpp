@@ -59,7 +59,8 @@ void write_geometry(OutputFile& file, ArrayWriter& arrays, const Scene& scene, c
   std::map<const Plant*, std::uint32_t> model_of;
   std::vector<std::string> types, plant_names;
   std::map<std::string, std::uint32_t> type_rows;
-  std::vector<std::uint32_t> shape_mesh, shape_first, shape_count, shape_structure, structure_parent, structure_type, plant_model, plant_optics;
+  std::vector<std::uint32_t> shape_mesh, shape_first, shape_count, shape_structure, structure_parent, structure_type, plant_model,
+      plant_optics;
   std::vector<double> shape_placement, copy_map;
   std::vector<std::uint64_t> model_first_shape{0}, model_first_structure{0}, plant_first_optics{0}, copy_first_facet;
 
@@ -122,7 +123,9 @@ void write_geometry(OutputFile& file, ArrayWriter& arrays, const Scene& scene, c
   arrays.write(g, "copy_plant", facets.copy_plant, "row of plant_name");
   arrays.write(g, "copy_map", copy_map.data(), {facets.copies.size(), 3, 4}, "m");
   arrays.write(g, "copy_first_facet", copy_first_facet, "row of /facets");
-  const std::vector<double> cell = facets.periodic ? std::vector<double>{facets.periodic->x_low, facets.periodic->y_low, facets.periodic->x_high, facets.periodic->y_high} : std::vector<double>{};
+  const std::vector<double> cell = facets.periodic ? std::vector<double>{facets.periodic->x_low, facets.periodic->y_low,
+                                                                         facets.periodic->x_high, facets.periodic->y_high}
+                                                   : std::vector<double>{};
   if (facets.periodic) arrays.write(g, "periodic_cell", cell, "m");
   write_attribute(file, g, "plant_facets", facets.plant_facets);
   write_attribute(file, g, "ground_facets", facets.size() - facets.plant_facets);

@@ -6,7 +6,9 @@ namespace sunfleck::h5 {
 
 namespace {
 
-std::vector<float> as_float(const std::vector<double>& values) { return {values.begin(), values.end()}; }
+std::vector<float> as_float(const std::vector<double>& values) {
+  return {values.begin(), values.end()};
+}
 
 /// sums[...][m][inner] / area[m], zero where there is no area.
 std::vector<float> per_area(const std::vector<double>& sums, const OrganTotals& totals, std::size_t inner) {
@@ -18,16 +20,18 @@ std::vector<float> per_area(const std::vector<double>& sums, const OrganTotals& 
   return out;
 }
 
-void write_balance(OutputFile& file, ArrayWriter& arrays, const SolveReport& report, const OrganTotals& totals, const HeightProfile& profile) {
+void write_balance(OutputFile& file, ArrayWriter& arrays, const SolveReport& report, const OrganTotals& totals,
+                   const HeightProfile& profile) {
   const std::size_t states = totals.states, bands = totals.bands;
   std::vector<double> columns[8];
-  const char* names[8] = {"incident", "leaves", "ground", "escaped", "residual", "absorbed_fraction_leaves", "absorbed_fraction_ground", "albedo"};
+  const char* names[8] = {"incident", "leaves", "ground", "escaped", "residual", "absorbed_fraction_leaves", "absorbed_fraction_ground",
+                          "albedo"};
   for (std::size_t s = 0; s < states; ++s)
     for (std::size_t b = 0; b < bands; ++b) {
       const Balance balance = report.balance.empty() ? Balance{} : report.balance.at(s).at(b);
       const double part = balance.incident > 0 ? 1.0 / balance.incident : 0.0;
-      const double values[8] = {balance.incident,        balance.leaves,        balance.ground,        balance.escaped, balance.residual(),
-                                balance.leaves * part, balance.ground * part, balance.escaped * part};
+      const double values[8] = {balance.incident,   balance.leaves,        balance.ground,        balance.escaped,
+                                balance.residual(), balance.leaves * part, balance.ground * part, balance.escaped * part};
       for (std::size_t i = 0; i < 8; ++i) columns[i].push_back(values[i]);
     }
   const Id group = make_group(file, file.id(), "balance");
@@ -58,7 +62,8 @@ void write_certificate(OutputFile& file, ArrayWriter& arrays, const Certificate&
 
 /// Two columns, /GROUP/name and /GROUP/value.
 template <class T>
-void write_pairs(OutputFile& file, ArrayWriter& arrays, hid_t group, const std::vector<std::pair<std::string, T>>& pairs, const char* column, const char* unit) {
+void write_pairs(OutputFile& file, ArrayWriter& arrays, hid_t group, const std::vector<std::pair<std::string, T>>& pairs,
+                 const char* column, const char* unit) {
   std::vector<std::string> names;
   std::vector<T> values;
   for (const auto& [name, value] : pairs) {
@@ -76,14 +81,15 @@ void write_pairs(OutputFile& file, ArrayWriter& arrays, hid_t group, const std::
 void write_organ_values(ArrayWriter& arrays, hid_t group, const OrganTotals& totals, const std::function<bool(const char*)>& keeps) {
   const std::size_t s = totals.states, m = totals.organs, b = totals.bands;
   arrays.write(group, "area", as_float(totals.area), "m^2");
-  if (keeps("organs/irradiance")) arrays.write_states(group, "irradiance", per_area(totals.irradiance, totals, 2 * b).data(), {s, m, 2, b}, "W m^-2");
+  if (keeps("organs/irradiance"))
+    arrays.write_states(group, "irradiance", per_area(totals.irradiance, totals, 2 * b).data(), {s, m, 2, b}, "W m^-2");
   if (keeps("organs/absorbed")) arrays.write_states(group, "absorbed", as_float(totals.absorbed).data(), {s, m, b}, "W");
   if (keeps("organs/sunlit")) arrays.write_states(group, "sunlit", per_area(totals.sunlit, totals, 2).data(), {s, m, 2}, "1");
   arrays.flush();
 }
 
-void write_report(OutputFile& file, ArrayWriter& arrays, const SolveReport& report, const Certificate* certificate, const OrganTotals& totals,
-                  const HeightProfile& profile) {
+void write_report(OutputFile& file, ArrayWriter& arrays, const SolveReport& report, const Certificate* certificate,
+                  const OrganTotals& totals, const HeightProfile& profile) {
   write_attribute(file, file.id(), "status", report.status == SolveStatus::converged ? "converged" : "not_converged");
   write_balance(file, arrays, report, totals, profile);
 

@@ -13,7 +13,7 @@ namespace sunfleck::h5 {
 /// /organs/irradiance, absorbed, sunlit, area; `keeps` says which.
 void write_organ_values(ArrayWriter& arrays, hid_t group, const OrganTotals& totals, const std::function<bool(const char*)>& keeps);
 /// /balance, /convergence, /counts, /certificate, /timings, /memory and the status.
-void write_report(OutputFile& file, ArrayWriter& arrays, const SolveReport& report, const Certificate* certificate, const OrganTotals& totals,
-                  const HeightProfile& profile);
+void write_report(OutputFile& file, ArrayWriter& arrays, const SolveReport& report, const Certificate* certificate,
+                  const OrganTotals& totals, const HeightProfile& profile);
 
 }  // namespace sunfleck::h5

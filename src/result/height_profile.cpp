@@ -6,7 +6,9 @@ namespace sunfleck {
 
 namespace {
 
-double centroid_height(const Triangle& t) { return (t[0].z + t[1].z + t[2].z) / 3.0; }
+double centroid_height(const Triangle& t) {
+  return (t[0].z + t[1].z + t[2].z) / 3.0;
+}
 
 }  // namespace
 

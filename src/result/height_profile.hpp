@@ -15,7 +15,9 @@ class HeightProfile {
   static constexpr std::size_t layers = 20;
   HeightProfile() = default;
   HeightProfile(const FacetScene& facets, std::size_t states);
-  void add_absorbed(std::size_t state, std::size_t facet, std::size_t band, double power) { absorbed[(state * layers + layer_[facet]) * bands_ + band] += power; }
+  void add_absorbed(std::size_t state, std::size_t facet, std::size_t band, double power) {
+    absorbed[(state * layers + layer_[facet]) * bands_ + band] += power;
+  }
 
   std::vector<double> height;    ///< [layers + 1] edges [m]
   std::vector<double> area;      ///< [layers] one-sided [m^2]

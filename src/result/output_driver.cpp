@@ -7,7 +7,6 @@
 
 #include <unistd.h>
 
-
 namespace sunfleck::h5 {
 
 namespace {
@@ -18,8 +17,12 @@ struct DriverFile {
   haddr_t end_of_allocation, end_of_file;
 };
 
-DriverFile& self(H5FD_t* file) { return *reinterpret_cast<DriverFile*>(file); }
-const DriverFile& self(const H5FD_t* file) { return *reinterpret_cast<const DriverFile*>(file); }
+DriverFile& self(H5FD_t* file) {
+  return *reinterpret_cast<DriverFile*>(file);
+}
+const DriverFile& self(const H5FD_t* file) {
+  return *reinterpret_cast<const DriverFile*>(file);
+}
 
 H5FD_t* open_file(const char*, unsigned, hid_t access, haddr_t) {
   const auto* info = static_cast<DriverState* const*>(H5Pget_driver_info(access));
@@ -40,12 +43,16 @@ herr_t query(const H5FD_t*, unsigned long* flags) {
   return 0;
 }
 
-haddr_t get_eoa(const H5FD_t* file, H5FD_mem_t) { return self(file).end_of_allocation; }
+haddr_t get_eoa(const H5FD_t* file, H5FD_mem_t) {
+  return self(file).end_of_allocation;
+}
 herr_t set_eoa(H5FD_t* file, H5FD_mem_t, haddr_t address) {
   self(file).end_of_allocation = address;
   return 0;
 }
-haddr_t get_eof(const H5FD_t* file, H5FD_mem_t) { return self(file).end_of_file; }
+haddr_t get_eof(const H5FD_t* file, H5FD_mem_t) {
+  return self(file).end_of_file;
+}
 
 herr_t read(H5FD_t* file, H5FD_mem_t, hid_t, haddr_t address, size_t size, void* buffer) {
   auto* bytes = static_cast<char*>(buffer);

@@ -48,8 +48,10 @@ std::vector<Mesh> read_meshes(const DatasetReader& reader) {
     reader.fail(g + "mesh_first_triangle", std::to_string(first_triangle.size()) + " rows", std::to_string(first_vertex.size()));
   std::vector<Mesh> meshes(first_vertex.size() - 1);
   for (std::size_t m = 0; m < meshes.size(); ++m) {
-    for (auto v = first_vertex[m]; v < first_vertex[m + 1]; ++v) meshes[m].vertices.emplace_back(vertices[v * 3], vertices[v * 3 + 1], vertices[v * 3 + 2]);
-    for (auto t = first_triangle[m]; t < first_triangle[m + 1]; ++t) meshes[m].triangles.push_back({triangles[t * 3], triangles[t * 3 + 1], triangles[t * 3 + 2]});
+    for (auto v = first_vertex[m]; v < first_vertex[m + 1]; ++v)
+      meshes[m].vertices.emplace_back(vertices[v * 3], vertices[v * 3 + 1], vertices[v * 3 + 2]);
+    for (auto t = first_triangle[m]; t < first_triangle[m + 1]; ++t)
+      meshes[m].triangles.push_back({triangles[t * 3], triangles[t * 3 + 1], triangles[t * 3 + 2]});
     check_mesh(meshes[m], location(reader.path(), 0, "/geometry/triangles"));
   }
   return meshes;
@@ -67,7 +69,8 @@ std::vector<std::shared_ptr<const Plant>> read_models(const DatasetReader& reade
   reader.expect(g + "structure_type", {parent.size()});
   const auto type = reader.all<std::uint32_t>(g + "structure_type");
   const auto types = reader.strings(g + "structure_type_name");
-  const auto model_shape = read_starts(reader, g + "model_first_shape", shapes), model_structure = read_starts(reader, g + "model_first_structure", parent.size());
+  const auto model_shape = read_starts(reader, g + "model_first_shape", shapes),
+             model_structure = read_starts(reader, g + "model_first_structure", parent.size());
   if (model_shape.size() != model_structure.size())
     reader.fail(g + "model_first_structure", std::to_string(model_structure.size()) + " rows", std::to_string(model_shape.size()));
 
@@ -86,7 +89,8 @@ std::vector<std::shared_ptr<const Plant>> read_models(const DatasetReader& reade
     std::uint32_t low = 0xffffffffu, high = 0;  // the model's own meshes
     for (auto s = model_shape[m]; s < model_shape[m + 1]; ++s) low = std::min(low, mesh[s]), high = std::max(high, mesh[s]);
     if (low <= high) plant->meshes.assign(meshes.begin() + low, meshes.begin() + high + 1);
-    for (auto s = model_shape[m]; s < model_shape[m + 1]; ++s) plant->shapes.push_back({structure[s], mesh[s] - low, first[s], count[s], 0, placement[s]});
+    for (auto s = model_shape[m]; s < model_shape[m + 1]; ++s)
+      plant->shapes.push_back({structure[s], mesh[s] - low, first[s], count[s], 0, placement[s]});
     check_plant(*plant);
     models.push_back(std::move(plant));
   }
@@ -107,11 +111,17 @@ ResultGeometry read_geometry(const DatasetReader& reader, std::size_t materials)
   const auto optics = reader.all<std::uint32_t>(g + "plant_shape_optics");
   expect_below(reader, g + "plant_shape_optics", optics, materials);
   const auto starts = read_starts(reader, g + "plant_first_optics", optics.size());
-  if (starts.size() != names.size() + 1) reader.fail(g + "plant_first_optics", std::to_string(starts.size()) + " rows", std::to_string(names.size() + 1));
+  if (starts.size() != names.size() + 1)
+    reader.fail(g + "plant_first_optics", std::to_string(starts.size()) + " rows", std::to_string(names.size() + 1));
   for (std::size_t p = 0; p < names.size(); ++p) {
-    ResultGeometry::Entry entry{names[p], models[model[p]], {optics.begin() + static_cast<std::ptrdiff_t>(starts[p]), optics.begin() + static_cast<std::ptrdiff_t>(starts[p + 1])}, {0}};
+    ResultGeometry::Entry entry{
+        names[p],
+        models[model[p]],
+        {optics.begin() + static_cast<std::ptrdiff_t>(starts[p]), optics.begin() + static_cast<std::ptrdiff_t>(starts[p + 1])},
+        {0}};
     if (entry.shape_optics.size() != entry.plant->shapes.size())
-      reader.fail(g + "plant_first_optics", std::to_string(entry.shape_optics.size()) + " shapes", std::to_string(entry.plant->shapes.size()));
+      reader.fail(g + "plant_first_optics", std::to_string(entry.shape_optics.size()) + " shapes",
+                  std::to_string(entry.plant->shapes.size()));
     for (const auto& s : entry.plant->shapes) entry.shape_facet.push_back(entry.shape_facet.back() + s.triangle_count);
     out.plants.push_back(std::move(entry));
   }
@@ -124,7 +134,8 @@ ResultGeometry read_geometry(const DatasetReader& reader, std::size_t materials)
     out.plant_facets += out.plants[copy_plant[c]].shape_facet.back();
   }
   if (reader.count_attribute("geometry", "plant_facets") != out.plant_facets)
-    reader.fail("geometry/@plant_facets", std::to_string(reader.count_attribute("geometry", "plant_facets")), std::to_string(out.plant_facets) + " as placed");
+    reader.fail("geometry/@plant_facets", std::to_string(reader.count_attribute("geometry", "plant_facets")),
+                std::to_string(out.plant_facets) + " as placed");
   if (const auto ground = reader.count_attribute("geometry", "ground_facets"); ground > 0) {
     if (meshes.empty() || meshes.back().triangles.size() != ground || materials == 0)
       reader.fail("geometry/@ground_facets", std::to_string(ground), "the triangles of the last mesh");

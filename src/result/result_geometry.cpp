@@ -12,7 +12,8 @@ void walk(const ResultGeometry& g, std::size_t first, std::size_t count, PlantPa
   const std::size_t end = first + count;
   std::size_t at = first;
   while (at < std::min(end, g.plant_facets)) {
-    const auto after = std::upper_bound(g.copies.begin(), g.copies.end(), at, [](std::size_t f, const auto& c) { return f < c.first_facet; });
+    const auto after =
+        std::upper_bound(g.copies.begin(), g.copies.end(), at, [](std::size_t f, const auto& c) { return f < c.first_facet; });
     const auto& copy = *(after - 1);
     const auto& starts = g.plants[copy.plant].shape_facet;
     const std::size_t local = at - copy.first_facet;

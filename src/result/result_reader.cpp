@@ -30,7 +30,8 @@ class Result::Impl {
     header.scene_sha256 = reader.text_attribute("/", "scene_sha256");
     bands = reader.strings("bands/name");
     band_units = reader.strings("bands/unit");
-    if (bands.empty() || bands.size() != band_units.size()) reader.fail("bands/unit", std::to_string(band_units.size()) + " rows", std::to_string(bands.size()));
+    if (bands.empty() || bands.size() != band_units.size())
+      reader.fail("bands/unit", std::to_string(band_units.size()) + " rows", std::to_string(bands.size()));
     read_states();
     check_shapes();
   }
@@ -39,7 +40,9 @@ class Result::Impl {
     const auto names = reader.strings("states/name"), models = reader.strings("states/sky_model");
     const std::size_t s = names.size(), b = bands.size();
     if (s == 0) reader.fail("states/name", "no state", "at least one");
-    for (const char* name : {"states/duration", "states/sun_present", "states/sun_angular_diameter", "states/sky_present", "states/sky_model"}) reader.expect(name, {s});
+    for (const char* name :
+         {"states/duration", "states/sun_present", "states/sun_angular_diameter", "states/sky_present", "states/sky_model"})
+      reader.expect(name, {s});
     reader.expect("states/sun_direction", {s, 3});
     for (const char* name : {"states/sun_irradiance", "states/sky_irradiance"}) reader.expect(name, {s, b});
     const auto duration = reader.all<double>("states/duration"), direction = reader.all<double>("states/sun_direction"),
@@ -79,7 +82,8 @@ class Result::Impl {
     const auto expect = [&](const char* name, const std::vector<std::size_t>& dims) {
       if (reader.has(name)) reader.expect(name, dims);
     };
-    for (const char* name : {"organs/name", "organs/type", "organs/plant", "organs/placement", "organs/structure"}) reader.expect(name, {m});
+    for (const char* name : {"organs/name", "organs/type", "organs/plant", "organs/placement", "organs/structure"})
+      reader.expect(name, {m});
     expect("organs/irradiance", {s, m, 2, b});
     expect("organs/absorbed", {s, m, b});
     expect("organs/sunlit", {s, m, 2});
@@ -114,16 +118,36 @@ Result::~Result() = default;
 Result::Result(Result&&) noexcept = default;
 Result& Result::operator=(Result&&) noexcept = default;
 
-const std::string& Result::file() const { return impl_->reader.path(); }
-const ResultHeader& Result::header() const { return impl_->header; }
-const std::vector<std::string>& Result::bands() const { return impl_->bands; }
-const std::vector<std::string>& Result::band_units() const { return impl_->band_units; }
-const std::vector<LightState>& Result::states() const { return impl_->states; }
-std::size_t Result::facet_count() const { return impl_->facets; }
-std::size_t Result::organ_count() const { return impl_->organs; }
-bool Result::has(const std::string& dataset) const { return impl_->reader.has(dataset); }
-std::vector<std::size_t> Result::shape(const std::string& dataset) const { return impl_->reader.shape(dataset); }
-std::vector<std::string> Result::strings(const std::string& dataset) const { return impl_->reader.strings(dataset); }
+const std::string& Result::file() const {
+  return impl_->reader.path();
+}
+const ResultHeader& Result::header() const {
+  return impl_->header;
+}
+const std::vector<std::string>& Result::bands() const {
+  return impl_->bands;
+}
+const std::vector<std::string>& Result::band_units() const {
+  return impl_->band_units;
+}
+const std::vector<LightState>& Result::states() const {
+  return impl_->states;
+}
+std::size_t Result::facet_count() const {
+  return impl_->facets;
+}
+std::size_t Result::organ_count() const {
+  return impl_->organs;
+}
+bool Result::has(const std::string& dataset) const {
+  return impl_->reader.has(dataset);
+}
+std::vector<std::size_t> Result::shape(const std::string& dataset) const {
+  return impl_->reader.shape(dataset);
+}
+std::vector<std::string> Result::strings(const std::string& dataset) const {
+  return impl_->reader.strings(dataset);
+}
 
 template <class T>
 std::vector<T> Result::rows(const std::string& dataset, std::size_t first, std::size_t count) const {
@@ -138,9 +162,9 @@ std::vector<T> Result::all(const std::string& dataset) const {
   return impl_->reader.all<T>(dataset);
 }
 
-#define SUNFLECK_INSTANTIATE(T)                                                                                           \
-  template std::vector<T> Result::rows<T>(const std::string&, std::size_t, std::size_t) const;                            \
-  template std::vector<T> Result::state_rows<T>(const std::string&, std::size_t, std::size_t, std::size_t) const;         \
+#define SUNFLECK_INSTANTIATE(T)                                                                                   \
+  template std::vector<T> Result::rows<T>(const std::string&, std::size_t, std::size_t) const;                    \
+  template std::vector<T> Result::state_rows<T>(const std::string&, std::size_t, std::size_t, std::size_t) const; \
   template std::vector<T> Result::all<T>(const std::string&) const;
 SUNFLECK_INSTANTIATE(float)
 SUNFLECK_INSTANTIATE(double)
@@ -211,7 +235,8 @@ std::vector<std::vector<Balance>> Result::balance() const {
     reader.expect(name, {s, b});
     return reader.all<double>(name);
   };
-  const auto incident = column("balance/incident"), leaves = column("balance/leaves"), ground = column("balance/ground"), escaped = column("balance/escaped");
+  const auto incident = column("balance/incident"), leaves = column("balance/leaves"), ground = column("balance/ground"),
+             escaped = column("balance/escaped");
   std::vector<std::vector<Balance>> out(s, std::vector<Balance>(b));
   for (std::size_t i = 0; i < s * b; ++i) out[i / b][i % b] = {incident[i], leaves[i], ground[i], escaped[i]};
   return out;
@@ -220,7 +245,8 @@ std::vector<std::vector<Balance>> Result::balance() const {
 StoredProfile Result::profile() const {
   const auto& reader = impl_->reader;
   StoredProfile out{reader.all<double>("balance/profile/height"), reader.all<double>("balance/profile/area"), {}};
-  if (out.height.size() != out.area.size() + 1) reader.fail("balance/profile/height", std::to_string(out.height.size()) + " rows", std::to_string(out.area.size() + 1));
+  if (out.height.size() != out.area.size() + 1)
+    reader.fail("balance/profile/height", std::to_string(out.height.size()) + " rows", std::to_string(out.area.size() + 1));
   reader.expect("balance/profile/absorbed", {impl_->states.size(), out.area.size(), impl_->bands.size()});
   out.absorbed = reader.all<double>("balance/profile/absorbed");
   return out;
@@ -229,7 +255,8 @@ StoredProfile Result::profile() const {
 std::vector<IterationRow> Result::convergence() const {
   const auto& reader = impl_->reader;
   const auto level = reader.all<std::uint32_t>("convergence/level");
-  for (const char* name : {"convergence/iteration", "convergence/residual", "convergence/links", "timings/iteration"}) reader.expect(name, {level.size()});
+  for (const char* name : {"convergence/iteration", "convergence/residual", "convergence/links", "timings/iteration"})
+    reader.expect(name, {level.size()});
   const auto iteration = reader.all<std::uint32_t>("convergence/iteration");
   const auto residual = reader.all<double>("convergence/residual"), seconds = reader.all<double>("timings/iteration");
   const auto links = reader.all<std::uint64_t>("convergence/links");
@@ -252,8 +279,12 @@ std::vector<std::pair<std::string, T>> read_pairs(const h5::DatasetReader& reade
 
 }  // namespace
 
-Timings Result::timings() const { return read_pairs<double>(impl_->reader, "timings", "seconds"); }
-std::vector<std::pair<std::string, std::uint64_t>> Result::counts() const { return read_pairs<std::uint64_t>(impl_->reader, "counts", "value"); }
+Timings Result::timings() const {
+  return read_pairs<double>(impl_->reader, "timings", "seconds");
+}
+std::vector<std::pair<std::string, std::uint64_t>> Result::counts() const {
+  return read_pairs<std::uint64_t>(impl_->reader, "counts", "value");
+}
 std::vector<std::pair<std::string, std::uint64_t>> Result::memory() const {
   auto out = read_pairs<std::uint64_t>(impl_->reader, "memory", "bytes");
   out.emplace_back("peak_resident", impl_->reader.count_attribute("memory", "peak_resident_bytes"));
@@ -282,7 +313,8 @@ std::optional<Certificate> Result::certificate() const {
   c.standard_error = reader.all<float>("certificate/standard_error");
   const auto per_band = [&](const char* name) {
     auto values = reader.values_attribute("certificate", name);
-    if (values.size() != impl_->bands.size()) reader.fail(std::string("certificate/@") + name, std::to_string(values.size()) + " values", std::to_string(impl_->bands.size()));
+    if (values.size() != impl_->bands.size())
+      reader.fail(std::string("certificate/@") + name, std::to_string(values.size()) + " values", std::to_string(impl_->bands.size()));
     return values;
   };
   c.rmse = per_band("rmse");

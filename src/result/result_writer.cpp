@@ -34,8 +34,8 @@ std::vector<std::string> checked_fields(const OutputChoice& output, const Scene&
 
 class ResultWriter::Impl {
  public:
-  Impl(const std::string& path, const Scene& scene, const FacetScene& facets, const OutputChoice& output, const std::string& software_version,
-       const std::string& method)
+  Impl(const std::string& path, const Scene& scene, const FacetScene& facets, const OutputChoice& output,
+       const std::string& software_version, const std::string& method)
       : scene_(scene), facets_(facets), fields_(checked_fields(output, scene)), keep_facets_(output.facets), file_(path), queue_(file_) {
     const h5::Quiet quiet;
     totals_.states = scene.states.size();
@@ -73,8 +73,8 @@ class ResultWriter::Impl {
   void rows(const IrradianceRows& r) {
     const h5::Quiet quiet;
     if (r.first_facet != next_facet_ || r.count > facets_.size() - next_facet_)
-      throw Error(fmt::format("{}: rows {} to {} of {} facets arrived where row {} was due", file_.path(), r.first_facet, r.first_facet + r.count,
-                              facets_.size(), next_facet_));
+      throw Error(fmt::format("{}: rows {} to {} of {} facets arrived where row {} was due", file_.path(), r.first_facet,
+                              r.first_facet + r.count, facets_.size(), next_facet_));
     for (std::size_t s = 0; s < totals_.states; ++s) state_rows(r, s);
     next_facet_ += r.count;
   }
@@ -94,7 +94,8 @@ class ResultWriter::Impl {
     h5::write_organ_values(arrays, organs_group_.get(), totals_, [&](const char* name) { return keeps(name); });
     if (!report.organ_variance.absorbed.empty() && keeps("variance/organs")) {
       if (!variance_group_) variance_group_ = h5::make_group(file_, file_.id(), "variance");
-      arrays.write_states(variance_group_.get(), "organs", report.organ_variance.absorbed.data(), {totals_.states, totals_.organs, totals_.bands}, "W^2");
+      arrays.write_states(variance_group_.get(), "organs", report.organ_variance.absorbed.data(),
+                          {totals_.states, totals_.organs, totals_.bands}, "W^2");
       arrays.flush();
     }
     h5::write_report(file_, arrays, report, certificate, totals_, profile_);
@@ -110,12 +111,15 @@ class ResultWriter::Impl {
   void begin_facets(h5::ArrayWriter& arrays) {
     const std::size_t n = facets_.size(), s = totals_.states, b = totals_.bands;
     bool any = false;
-    for (const char* name : {"facets/irradiance", "facets/absorbed", "facets/sunlit", "facets/area", "facets/centroid", "facets/organ"}) any = any || keeps(name);
+    for (const char* name : {"facets/irradiance", "facets/absorbed", "facets/sunlit", "facets/area", "facets/centroid", "facets/organ"})
+      any = any || keeps(name);
     if (!any) return;
     facets_group_ = h5::make_group(file_, file_.id(), "facets");
     const hid_t group = facets_group_.get();
     const auto begin = [&](std::vector<RowDataset>& dataset, const char* name, std::vector<std::size_t> inner, const char* unit) {
-      if (keeps(name)) dataset.emplace_back(file_, queue_, group, name + sizeof "facets/" - 1, H5T_NATIVE_FLOAT, RowDataset::Shape{s, n, std::move(inner)}, unit);
+      if (keeps(name))
+        dataset.emplace_back(file_, queue_, group, name + sizeof "facets/" - 1, H5T_NATIVE_FLOAT, RowDataset::Shape{s, n, std::move(inner)},
+                             unit);
     };
     begin(irradiance_, "facets/irradiance", {2, b}, "W m^-2");
     begin(absorbed_, "facets/absorbed", {b}, "W m^-2");
@@ -147,7 +151,8 @@ class ResultWriter::Impl {
       double* organ_absorbed = &totals_.absorbed[(s * totals_.organs + organ) * bands];
       for (std::size_t b = 0; b < bands; ++b) {
         const double front = irradiance[(i * 2) * bands + b], back = irradiance[(i * 2 + 1) * bands + b];
-        if (!std::isfinite(front) || !std::isfinite(back)) throw Error(fmt::format("{}: the irradiance of facet {} is not finite", file_.path(), facet));
+        if (!std::isfinite(front) || !std::isfinite(back))
+          throw Error(fmt::format("{}: the irradiance of facet {} is not finite", file_.path(), facet));
         const double* absorptance = &absorptance_[(facets_.optics[facet] * bands + b) * 2];
         const auto absorbed = static_cast<float>(absorptance[0] * front + absorptance[1] * back);
         absorbed_rows_[i * bands + b] = absorbed;
@@ -165,8 +170,8 @@ class ResultWriter::Impl {
     if (r.variance_of_absorbed && facets_group_ && keeps("variance/facets")) {
       if (variance_.empty()) {
         variance_group_ = h5::make_group(file_, file_.id(), "variance");
-        variance_.emplace_back(file_, queue_, variance_group_.get(), "facets", H5T_NATIVE_FLOAT, RowDataset::Shape{totals_.states, facets_.size(), {bands}},
-                               "W^2 m^-4");
+        variance_.emplace_back(file_, queue_, variance_group_.get(), "facets", H5T_NATIVE_FLOAT,
+                               RowDataset::Shape{totals_.states, facets_.size(), {bands}}, "W^2 m^-4");
       }
       variance_.front().append(s, r.variance_of_absorbed + s * r.count * bands, r.count);
     }
@@ -192,8 +197,14 @@ ResultWriter::ResultWriter(const std::string& file, const Scene& scene, const Fa
     : impl_(std::make_unique<Impl>(file, scene, facets, output, software_version, method)) {}
 ResultWriter::~ResultWriter() = default;
 
-void ResultWriter::rows(const IrradianceRows& rows) { impl_->rows(rows); }
-const OrganTotals& ResultWriter::totals() const { return impl_->totals(); }
-void ResultWriter::finish(const SolveReport& report, const Certificate* certificate) { impl_->finish(report, certificate); }
+void ResultWriter::rows(const IrradianceRows& rows) {
+  impl_->rows(rows);
+}
+const OrganTotals& ResultWriter::totals() const {
+  return impl_->totals();
+}
+void ResultWriter::finish(const SolveReport& report, const Certificate* certificate) {
+  impl_->finish(report, certificate);
+}
 
 }  // namespace sunfleck

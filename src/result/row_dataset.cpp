@@ -10,10 +10,10 @@ namespace sunfleck::h5 {
 
 namespace {
 
-constexpr std::size_t small_bytes = std::size_t{64} << 10;    // below: stored in one piece, uncompressed
-constexpr std::size_t chunk_bytes = std::size_t{256} << 10;   // large enough for deflate, small enough for reading a range
-constexpr std::size_t batch_bytes = std::size_t{16} << 20;    // chunks in flight
-constexpr std::uint32_t deflate_skipped = 1u << 1;            // filter 0 is shuffle, filter 1 deflate
+constexpr std::size_t small_bytes = std::size_t{64} << 10;   // below: stored in one piece, uncompressed
+constexpr std::size_t chunk_bytes = std::size_t{256} << 10;  // large enough for deflate, small enough for reading a range
+constexpr std::size_t batch_bytes = std::size_t{16} << 20;   // chunks in flight
+constexpr std::uint32_t deflate_skipped = 1u << 1;           // filter 0 is shuffle, filter 1 deflate
 
 }  // namespace
 
@@ -166,11 +166,13 @@ Id make_group(OutputFile& file, hid_t parent, const char* name) {
   return group;
 }
 
-void ArrayWriter::write_raw(hid_t group, const char* name, hid_t type, const void* data, const RowDataset::Shape& shape, std::string_view unit) {
+void ArrayWriter::write_raw(hid_t group, const char* name, hid_t type, const void* data, const RowDataset::Shape& shape,
+                            std::string_view unit) {
   auto& dataset = open_.emplace_back(file_, queue_, group, name, type, shape, unit);
   std::size_t bytes = H5Tget_size(type) * shape.rows;
   for (const auto n : shape.inner) bytes *= n;
-  for (std::size_t o = 0; o < std::max<std::size_t>(shape.outer, 1); ++o) dataset.append(o, static_cast<const char*>(data) + o * bytes, shape.rows);
+  for (std::size_t o = 0; o < std::max<std::size_t>(shape.outer, 1); ++o)
+    dataset.append(o, static_cast<const char*>(data) + o * bytes, shape.rows);
   dataset.finish();
 }
 
@@ -178,7 +180,8 @@ void ArrayWriter::write_strings(hid_t group, const char* name, const std::vector
   std::size_t length = 1;
   for (const auto& t : texts) length = std::max(length, t.size());
   std::vector<char> padded(texts.size() * length, '\0');
-  for (std::size_t i = 0; i < texts.size(); ++i) std::copy(texts[i].begin(), texts[i].end(), padded.begin() + static_cast<std::ptrdiff_t>(i * length));
+  for (std::size_t i = 0; i < texts.size(); ++i)
+    std::copy(texts[i].begin(), texts[i].end(), padded.begin() + static_cast<std::ptrdiff_t>(i * length));
   const Id type = string_type(length);
   write_raw(group, name, type.get(), padded.data(), {0, texts.size(), {}}, "");
 }

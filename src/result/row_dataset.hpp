@@ -44,7 +44,8 @@ class RowDataset {
     std::size_t rows = 0;
     std::vector<std::size_t> inner;
   };
-  RowDataset(OutputFile& file, ChunkQueue& queue, hid_t parent, const std::string& name, hid_t type, const Shape& shape, std::string_view unit);
+  RowDataset(OutputFile& file, ChunkQueue& queue, hid_t parent, const std::string& name, hid_t type, const Shape& shape,
+             std::string_view unit);
 
   /// `count` next rows of one outer index.
   void append(std::size_t outer, const void* rows, std::size_t count);

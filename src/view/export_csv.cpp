@@ -21,7 +21,9 @@ std::string field(const std::string& text) {
   return quoted + "\"";
 }
 
-bool photons(const std::string& unit) { return unit.find("mol") != std::string::npos; }
+bool photons(const std::string& unit) {
+  return unit.find("mol") != std::string::npos;
+}
 
 /// Values of a block of organs in one state; empty where the file does not keep them.
 struct Block {
@@ -33,8 +35,10 @@ struct Block {
 void export_csv(const Result& result, const std::string& file, Progress& progress) {
   const std::size_t m = result.organ_count(), bands = result.bands().size(), states = result.states().size();
   const bool absorbed = result.has("organs/absorbed"), irradiance = result.has("organs/irradiance"), sunlit = result.has("organs/sunlit");
-  if (!absorbed && !irradiance && !sunlit) throw InputError(location(result.file(), 0, "/organs"), "no values", "some; [output] fields of the scene left them out");
-  const bool sums = absorbed && std::all_of(result.states().begin(), result.states().end(), [](const LightState& s) { return s.duration_s > 0; });
+  if (!absorbed && !irradiance && !sunlit)
+    throw InputError(location(result.file(), 0, "/organs"), "no values", "some; [output] fields of the scene left them out");
+  const bool sums =
+      absorbed && std::all_of(result.states().begin(), result.states().end(), [](const LightState& s) { return s.duration_s > 0; });
   const OrganTable organs = result.organs();
   const auto area = result.rows<float>("organs/area", 0, m);
 
@@ -53,7 +57,8 @@ void export_csv(const Result& result, const std::string& file, Progress& progres
     if (sunlit) column("sunlit_front"), column("sunlit_back");
   }
   if (sums)
-    for (std::size_t b = 0; b < bands; ++b) fmt::format_to(put, ",{}", field((photons(result.band_units()[b]) ? "absorbed_umol_" : "absorbed_J_") + result.bands()[b]));
+    for (std::size_t b = 0; b < bands; ++b)
+      fmt::format_to(put, ",{}", field((photons(result.band_units()[b]) ? "absorbed_umol_" : "absorbed_J_") + result.bands()[b]));
   text.push_back('\n');
 
   std::vector<double> sum(bands);
@@ -78,7 +83,8 @@ void export_csv(const Result& result, const std::string& file, Progress& progres
             sum[b] += double{power} * result.states()[s].duration_s;
             fmt::format_to(put, ",{}", power);
           }
-          if (irradiance) fmt::format_to(put, ",{},{}", blocks[s].irradiance[2 * i * bands + b], blocks[s].irradiance[(2 * i + 1) * bands + b]);
+          if (irradiance)
+            fmt::format_to(put, ",{},{}", blocks[s].irradiance[2 * i * bands + b], blocks[s].irradiance[(2 * i + 1) * bands + b]);
         }
         if (sunlit) fmt::format_to(put, ",{},{}", blocks[s].sunlit[2 * i], blocks[s].sunlit[2 * i + 1]);
       }

@@ -58,11 +58,14 @@ std::vector<Column> columns_of(const Result& result, const MeshChoice& choice) {
 
 std::string header(const Result& result, const std::vector<Column>& columns, std::size_t vertices, std::size_t faces) {
   std::string text = "ply\nformat binary_little_endian 1.0\n";
-  text += fmt::format("comment Sunfleck {}, method {}; one face a facet; lengths in m\n", result.header().software_version, result.header().method);
-  for (std::size_t b = 0; b < result.bands().size(); ++b) text += fmt::format("comment irradiance and absorbed {}: {} of one-sided area\n", result.bands()[b], result.band_units()[b]);
+  text += fmt::format("comment Sunfleck {}, method {}; one face a facet; lengths in m\n", result.header().software_version,
+                      result.header().method);
+  for (std::size_t b = 0; b < result.bands().size(); ++b)
+    text += fmt::format("comment irradiance and absorbed {}: {} of one-sided area\n", result.bands()[b], result.band_units()[b]);
   text += "comment sunlit: fraction of the side that the sun reaches; organ: row of /organs of the result\n";
   text += fmt::format("element vertex {}\nproperty double x\nproperty double y\nproperty double z\n", vertices);
-  text += fmt::format("element face {}\nproperty list uchar int vertex_indices\nproperty uchar red\nproperty uchar green\nproperty uchar blue\n", faces);
+  text += fmt::format(
+      "element face {}\nproperty list uchar int vertex_indices\nproperty uchar red\nproperty uchar green\nproperty uchar blue\n", faces);
   text += "property float quality\nproperty int organ\nproperty float area\n";
   for (const auto& column : columns) text += "property float " + column.name + "\n";
   return text + "end_header\n";
@@ -85,7 +88,8 @@ void write_vertices(ReplacedFile& out, const ResultGeometry& geometry, const Sha
 }
 
 /// Calls face(vertex rows) for every facet, in order.
-void for_each_face(const ResultGeometry& geometry, const SharedVertices& shared, const std::function<void(const std::array<std::uint32_t, 3>&)>& face) {
+void for_each_face(const ResultGeometry& geometry, const SharedVertices& shared,
+                   const std::function<void(const std::array<std::uint32_t, 3>&)>& face) {
   std::uint32_t base = 0;
   for (const auto& copy : geometry.copies) {
     const Plant& plant = *geometry.plants[copy.plant].plant;
@@ -103,10 +107,12 @@ void for_each_face(const ResultGeometry& geometry, const SharedVertices& shared,
 }
 
 /// Rows of faces of [first, first + count) without their vertices, `stride` bytes each.
-std::vector<char> face_values(const Result& result, const LitColours& colours, const std::vector<Column>& columns, std::size_t first, std::size_t count,
-                              std::size_t stride) {
+std::vector<char> face_values(const Result& result, const LitColours& colours, const std::vector<Column>& columns, std::size_t first,
+                              std::size_t count, std::size_t stride) {
   std::vector<char> rows(count * stride);
-  const auto put = [&](std::size_t i, std::size_t offset, const auto& value) { std::memcpy(&rows[i * stride + offset], &value, sizeof value); };
+  const auto put = [&](std::size_t i, std::size_t offset, const auto& value) {
+    std::memcpy(&rows[i * stride + offset], &value, sizeof value);
+  };
   const auto lit = colours.range(first, count);
   const auto organ = result.facet_organs(first, count);
   const auto area = result.rows<float>("facets/area", first, count);
@@ -130,7 +136,8 @@ std::vector<char> face_values(const Result& result, const LitColours& colours, c
 
 void export_ply(const Result& result, const std::string& file, const MeshChoice& choice, Progress& progress) {
   if (!result.has("facets/area"))
-    throw InputError(location(result.file(), 0, "/facets"), "nothing", "values per facet; the scene kept organs only ([output] facets = false)");
+    throw InputError(location(result.file(), 0, "/facets"), "nothing",
+                     "values per facet; the scene kept organs only ([output] facets = false)");
   const ResultGeometry geometry = result.geometry();
   const SharedVertices shared(geometry);
   const std::size_t n = geometry.facet_count();

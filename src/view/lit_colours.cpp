@@ -22,12 +22,18 @@ const std::vector<std::string>& mesh_quantities() {
 }
 
 LitColours::LitColours(const Result& result, const ResultGeometry& geometry, const MeshChoice& choice, Progress& progress)
-    : result_(result), geometry_(geometry), choice_(choice), state_(choice.state.value_or(0)), natural_(choice.quantity == "colour"), quantity_(choice.quantity),
+    : result_(result),
+      geometry_(geometry),
+      choice_(choice),
+      state_(choice.state.value_or(0)),
+      natural_(choice.quantity == "colour"),
+      quantity_(choice.quantity),
       materials_(result.materials()) {
   const auto& known = mesh_quantities();
   if (!natural_ && std::find(known.begin(), known.end(), quantity_) == known.end()) {
     const std::string nearest = nearest_name(quantity_, known);
-    throw UsageError(fmt::format("--quantity: found '{}'; expected colour, {}{}", quantity_, joined(known), nearest.empty() ? "" : " (did you mean '" + nearest + "'?)"));
+    throw UsageError(fmt::format("--quantity: found '{}'; expected colour, {}{}", quantity_, joined(known),
+                                 nearest.empty() ? "" : " (did you mean '" + nearest + "'?)"));
   }
   if (natural_ && !result.has("facets/irradiance")) natural_ = false, quantity_ = "absorbed";
   if (natural_) {
@@ -84,7 +90,8 @@ std::vector<Rgb> LitColours::light(std::size_t first, std::size_t count) const {
   for (std::size_t i = 0; i < count; ++i) {
     const Surface surface = first + i >= geometry_.plant_facets ? Surface::soil : surfaces_[optics[i]][organ_type_[organ[i]]];
     const float* e = &irradiance[2 * i * bands];
-    out[i] = 0.5f * (facet_colour(bands_, materials_[optics[i]], surface, e, Side::front) + facet_colour(bands_, materials_[optics[i]], surface, e, Side::back));
+    out[i] = 0.5f * (facet_colour(bands_, materials_[optics[i]], surface, e, Side::front) +
+                     facet_colour(bands_, materials_[optics[i]], surface, e, Side::back));
   }
   return out;
 }

@@ -11,7 +11,7 @@ namespace sunfleck {
 
 /// A piece of mesh (a shape) with only the vertices that it uses.
 struct Piece {
-  std::vector<std::uint32_t> vertices;                   ///< rows of the mesh's vertices
+  std::vector<std::uint32_t> vertices;                  ///< rows of the mesh's vertices
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< rows of `vertices`
 };
 

@@ -23,12 +23,15 @@ std::string good_file(const Folder& folder, std::uint32_t leaves = 3) {
   return folder / "r.h5";
 }
 
-h5::Id open_file(const std::string& file) { return h5::Id{H5Fopen(file.c_str(), H5F_ACC_RDWR, H5P_DEFAULT)}; }
+h5::Id open_file(const std::string& file) {
+  return h5::Id{H5Fopen(file.c_str(), H5F_ACC_RDWR, H5P_DEFAULT)};
+}
 
 /// Puts another dataset in the place of one; chunked datasets take no room.
 template <class T>
 void replace(const std::string& file, const char* name, std::vector<hsize_t> dims, const std::vector<T>& values, hsize_t chunk = 0) {
-  const h5::Id f = open_file(file), space{H5Screate_simple(static_cast<int>(dims.size()), dims.data(), nullptr)}, properties{H5Pcreate(H5P_DATASET_CREATE)};
+  const h5::Id f = open_file(file), space{H5Screate_simple(static_cast<int>(dims.size()), dims.data(), nullptr)},
+               properties{H5Pcreate(H5P_DATASET_CREATE)};
   if (chunk > 0) {
     std::vector<hsize_t> chunks(dims.size(), 1);
     chunks[0] = chunk;
@@ -43,8 +46,11 @@ void replace(const std::string& file, const char* name, std::vector<hsize_t> dim
 /// Everything that a verb could ask of a file.
 void read_everything(const std::string& file) {
   const Result r(file);
-  (void)r.organs(), r.materials(), r.geometry(), r.balance(), r.profile(), r.convergence(), r.timings(), r.counts(), r.memory(), r.certificate();
-  for (const char* name : {"facets/irradiance", "facets/absorbed", "facets/sunlit", "organs/irradiance", "organs/absorbed", "organs/sunlit"}) (void)r.all<float>(name);
+  (void)r.organs(), r.materials(), r.geometry(), r.balance(), r.profile(), r.convergence(), r.timings(), r.counts(), r.memory(),
+      r.certificate();
+  for (const char* name :
+       {"facets/irradiance", "facets/absorbed", "facets/sunlit", "organs/irradiance", "organs/absorbed", "organs/sunlit"})
+    (void)r.all<float>(name);
   (void)r.all<double>("facets/centroid");
   (void)r.facet_organs(0, r.facet_count());
   (void)compare(r, r);

@@ -24,8 +24,8 @@ Scene black_scene() {
 }
 
 struct Made {
-  std::vector<float> front;                       ///< [n] W m^-2
-  std::vector<float> variance, organ_variance;    ///< [n], [m], or empty
+  std::vector<float> front;                     ///< [n] W m^-2
+  std::vector<float> variance, organ_variance;  ///< [n], [m], or empty
   Balance balance{10, 6, 2, 2};
 };
 
@@ -92,7 +92,7 @@ TEST_CASE("compare finds the bias, rmse and maximum that were put in", "[result]
     const auto c = compare(Result(write(folder, "x.h5", scene, wrong)), Result(write(folder, "r.h5", scene, noisy)));
     CHECK(c.facets.overall[0].rmse == Approx(0.03).epsilon(1e-5));  // sqrt(25 - 16) = 3
     CHECK(c.facets.overall[0].noise == Approx(0.04).epsilon(1e-5));
-    CHECK(c.organs.overall[0].rmse == 0.0);                         // 25 - 36 < 0
+    CHECK(c.organs.overall[0].rmse == 0.0);  // 25 - 36 < 0
     CHECK(c.organs.overall[0].noise == Approx(0.06).epsilon(1e-5));
     CHECK(c.organs.overall[0].bias == Approx(0.05).epsilon(1e-5));
     // The noise of both files, where both are references.
@@ -133,7 +133,7 @@ TEST_CASE("compare counts each state and all together", "[result][compare]") {
   const auto c = compare(write_states("x.h5", 102, 19), write_states("r.h5", 100, 20));
   CHECK(c.organs.states[0][0].bias == Approx(0.02).epsilon(1e-5));
   CHECK(c.organs.states[1][0].bias == Approx(-0.05).epsilon(1e-5));
-  CHECK(c.organs.overall[0].bias == Approx(0.5 / 60).epsilon(1e-5));                      // (2 - 1) / 2 over (100 + 20) / 2
+  CHECK(c.organs.overall[0].bias == Approx(0.5 / 60).epsilon(1e-5));  // (2 - 1) / 2 over (100 + 20) / 2
   CHECK(c.organs.overall[0].rmse == Approx(std::sqrt((4.0 + 1.0) / 2) / 60).epsilon(1e-5));
 }
 

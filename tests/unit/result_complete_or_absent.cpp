@@ -72,7 +72,8 @@ TEST_CASE("A result that is not finished leaves what was there", "[result][compl
   SECTION("rows come twice") {
     ResultWriter writer(file, scene, facets, scene.output, "0.1.0", "flat");
     writer.rows({0, 1, values.irradiance.data(), nullptr, nullptr});
-    CHECK_THROWS_WITH(writer.rows({0, 1, values.irradiance.data(), nullptr, nullptr}), file + ": rows 0 to 1 of 4016 facets arrived where row 1 was due");
+    CHECK_THROWS_WITH(writer.rows({0, 1, values.irradiance.data(), nullptr, nullptr}),
+                      file + ": rows 0 to 1 of 4016 facets arrived where row 1 was due");
   }
   SECTION("a value is not finite") {
     auto broken = values.irradiance;

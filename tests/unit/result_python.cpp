@@ -23,8 +23,9 @@ TEST_CASE("An ordinary reader, h5py, opens results as docs/formats-result.md say
     values.send(writer, 1000, true);
     writer.finish(small_report());
   }
-  std::ofstream(folder / "irradiance.bin", std::ios::binary).write(reinterpret_cast<const char*>(values.irradiance.data()),
-                                                                    static_cast<std::streamsize>(values.irradiance.size() * sizeof(float)));
+  std::ofstream(folder / "irradiance.bin", std::ios::binary)
+      .write(reinterpret_cast<const char*>(values.irradiance.data()),
+             static_cast<std::streamsize>(values.irradiance.size() * sizeof(float)));
   std::ofstream(folder / "check.py") << R"(
 import sys, h5py, numpy as np
 folder = sys.argv[1]

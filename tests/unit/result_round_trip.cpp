@@ -26,7 +26,8 @@ constexpr double rounding = 1e-12;  // 2^-53 of scenes some hundred metres wide,
 TEST_CASE("SHA-256 gives the digests of FIPS 180-4", "[result]") {
   CHECK(sha256_hex("") == "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
   CHECK(sha256_hex("abc") == "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
-  CHECK(sha256_hex("abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq") == "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1");
+  CHECK(sha256_hex("abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq") ==
+        "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1");
 }
 
 TEST_CASE("A result file gives back what was written", "[result]") {
@@ -86,16 +87,19 @@ TEST_CASE("A result file gives back what was written", "[result]") {
       for (std::size_t b = 0; b < 2; ++b) {
         const auto& o = facets.materials[facets.optics[f]];
         const double front = values.irradiance[((s * n + f) * 2) * 2 + b], back = values.irradiance[((s * n + f) * 2 + 1) * 2 + b];
-        const double wanted = (1.0 - o.reflectance_front[b] - o.transmittance[b]) * front + (1.0 - o.reflectance_back[b] - o.transmittance[b]) * back;
+        const double wanted =
+            (1.0 - o.reflectance_front[b] - o.transmittance[b]) * front + (1.0 - o.reflectance_back[b] - o.transmittance[b]) * back;
         worst = std::max(worst, std::abs(absorbed[(s * n + f) * 2 + b] - wanted) / wanted);
         organ_absorbed[(s * m + facets.organ[f]) * 2 + b] += wanted * facets.area[f];
         if (s == 0 && b == 0) organ_front[facets.organ[f]] += front * facets.area[f];
       }
   CHECK(worst < 1e-7);
-  const auto stored = result.all<float>("organs/absorbed"), organ_area = result.all<float>("organs/area"), organ_irradiance = result.all<float>("organs/irradiance");
+  const auto stored = result.all<float>("organs/absorbed"), organ_area = result.all<float>("organs/area"),
+             organ_irradiance = result.all<float>("organs/irradiance");
   worst = 0;
   for (std::size_t i = 0; i < stored.size(); ++i) worst = std::max(worst, std::abs(stored[i] - organ_absorbed[i]) / organ_absorbed[i]);
-  for (std::size_t o = 0; o < m; ++o) worst = std::max(worst, std::abs(organ_irradiance[o * 4] - organ_front[o] / organ_area[o]) / organ_irradiance[o * 4]);
+  for (std::size_t o = 0; o < m; ++o)
+    worst = std::max(worst, std::abs(organ_irradiance[o * 4] - organ_front[o] / organ_area[o]) / organ_irradiance[o * 4]);
   CHECK(worst < 3e-7);
 
   // The scene can be drawn from the file alone, with the coordinates that the solver had.
@@ -105,7 +109,8 @@ TEST_CASE("A result file gives back what was written", "[result]") {
   CHECK(geometry.optics(0, n) == facets.optics);
   for (const std::size_t first : {std::size_t{0}, std::size_t{2}, n / 2, n - 9})
     for (const std::size_t count : {1, 4, 9}) {
-      const std::vector<Triangle> part(facets.corners.begin() + static_cast<std::ptrdiff_t>(first), facets.corners.begin() + static_cast<std::ptrdiff_t>(first + count));
+      const std::vector<Triangle> part(facets.corners.begin() + static_cast<std::ptrdiff_t>(first),
+                                       facets.corners.begin() + static_cast<std::ptrdiff_t>(first + count));
       CHECK(distance(geometry.corners(first, count), part) < rounding);
     }
   CHECK(result.materials()[0].reflectance_back == scene.optics[0].reflectance_back);
@@ -118,7 +123,8 @@ TEST_CASE("A result file gives back what was written", "[result]") {
   double area = 0, plant_area = 0, power = 0, plant_power = 0;
   for (const double a : profile.area) area += a;
   for (std::size_t l = 0; l < profile.area.size(); ++l) power += profile.absorbed[l * 2];
-  for (std::size_t f = 0; f < facets.plant_facets; ++f) plant_area += facets.area[f], plant_power += double{absorbed[f * 2]} * facets.area[f];
+  for (std::size_t f = 0; f < facets.plant_facets; ++f)
+    plant_area += facets.area[f], plant_power += double{absorbed[f * 2]} * facets.area[f];
   CHECK(area == Approx(plant_area));
   CHECK(power == Approx(plant_power));
 
@@ -147,7 +153,8 @@ TEST_CASE("The same rows give the same bytes", "[result]") {
     writer.finish(report);
   }
   const Result a(folder / "a.h5"), b(folder / "b.h5");
-  for (const char* name : {"facets/irradiance", "facets/absorbed", "organs/absorbed", "organs/sunlit"}) CHECK(a.all<float>(name) == b.all<float>(name));
+  for (const char* name : {"facets/irradiance", "facets/absorbed", "organs/absorbed", "organs/sunlit"})
+    CHECK(a.all<float>(name) == b.all<float>(name));
 }
 
 TEST_CASE("[output] decides what a result keeps", "[result]") {
@@ -186,8 +193,9 @@ TEST_CASE("[output] decides what a result keeps", "[result]") {
     CHECK_FALSE(r.has("variance"));
   }
   SECTION("a misspelt name") {
-    CHECK_THROWS_WITH(write({true, {"facets/absorbd"}}),
-                      "scene in memory: output.fields: found \"facets/absorbd\"; expected a dataset of the result, such as \"facets/absorbed\"");
+    CHECK_THROWS_WITH(
+        write({true, {"facets/absorbd"}}),
+        "scene in memory: output.fields: found \"facets/absorbd\"; expected a dataset of the result, such as \"facets/absorbed\"");
     CHECK(folder.files() == 0);
   }
 }

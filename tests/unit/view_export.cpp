@@ -141,7 +141,8 @@ TEST_CASE("A lit PLY holds every facet, in order, with every stored quantity", "
   }
   SECTION("an unknown quantity") {
     CHECK_THROWS_WITH(export_ply(result, stored.folder / "m.ply", {"absorbd", 0, {}, ColorMap::viridis}, silent()),
-                      "--quantity: found 'absorbd'; expected colour, absorbed, irradiance_front, irradiance_back, sunlit_front, sunlit_back (did you mean 'absorbed'?)");
+                      "--quantity: found 'absorbd'; expected colour, absorbed, irradiance_front, irradiance_back, sunlit_front, "
+                      "sunlit_back (did you mean 'absorbed'?)");
     CHECK(stored.folder.files() == 1);
   }
 }
@@ -154,8 +155,12 @@ TEST_CASE("A table per organ has sums over the day", "[view][export]") {
   std::string line;
   std::getline(in, line);
   const auto names = split(line);
-  CHECK(line.rfind("organ,plant,placement,name,type,area_m2,absorbed_W_PAR_noon,irradiance_front_PAR_noon,irradiance_back_PAR_noon,absorbed_W_NIR_noon,", 0) == 0);
-  const auto column = [&](const std::string& name) { return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin()); };
+  CHECK(line.rfind("organ,plant,placement,name,type,area_m2,absorbed_W_PAR_noon,irradiance_front_PAR_noon,irradiance_back_PAR_noon,"
+                   "absorbed_W_NIR_noon,",
+                   0) == 0);
+  const auto column = [&](const std::string& name) {
+    return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
+  };
   const auto absorbed = result.all<float>("organs/absorbed");
   const std::size_t m = result.organ_count();
   for (std::size_t o = 0; o < m; ++o) {
@@ -184,7 +189,8 @@ TEST_CASE("A result without facets makes a table and no mesh", "[view][export]")
   }
   const Result result(folder / "r.h5");
   export_csv(result, folder / "o.csv", silent());
-  CHECK_THROWS_WITH(export_ply(result, folder / "m.ply", {}, silent()),
-                    (folder / "r.h5") + ": /facets: found nothing; expected values per facet; the scene kept organs only ([output] facets = false)");
+  CHECK_THROWS_WITH(
+      export_ply(result, folder / "m.ply", {}, silent()),
+      (folder / "r.h5") + ": /facets: found nothing; expected values per facet; the scene kept organs only ([output] facets = false)");
   CHECK(folder.files() == 2);
 }

@@ -19,11 +19,11 @@ namespace sunfleck {
 /// Where the plants of the reference absorb less than 1e-6 of the incident light (albedo 1), irradiance, front plus back, takes the place
 /// of absorbed, and no noise is known. All zero where the reference has no light at all in the band.
 struct BandError {
-  double mean = 0;       ///< [W m^-2, or the band's unit]
-  double bias = 0;       ///< [-]
-  double rmse = 0;       ///< [-]
-  double maximum = 0;    ///< [-]
-  double noise = 0;      ///< [-]
+  double mean = 0;     ///< [W m^-2, or the band's unit]
+  double bias = 0;     ///< [-]
+  double rmse = 0;     ///< [-]
+  double maximum = 0;  ///< [-]
+  double noise = 0;    ///< [-]
   bool irradiance = false;
   std::size_t count = 0;  ///< organs or facets compared, of all states counted
 };

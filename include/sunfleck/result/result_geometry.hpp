@@ -16,8 +16,8 @@ namespace sunfleck {
 /// Holds each mesh once; facets are made on request, as the solver had them (coordinates to the last bit where nothing is contracted).
 struct ResultGeometry {
   struct Copy {
-    std::uint32_t plant = 0;        ///< row of `plants`
-    Affine map;                     ///< plant frame -> world
+    std::uint32_t plant = 0;  ///< row of `plants`
+    Affine map;               ///< plant frame -> world
     std::size_t first_facet = 0;
   };
   struct Entry {

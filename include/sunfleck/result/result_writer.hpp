@@ -20,7 +20,9 @@ struct OrganTotals {
   std::vector<double> sunlit;      ///< [s][m][2] sum over facets of area x sunlit fraction [m^2]
   std::vector<double> area;        ///< [m] one-sided [m^2]
 
-  double absorbed_power(std::size_t state, std::size_t organ, std::size_t band) const { return absorbed[(state * organs + organ) * bands + band]; }
+  double absorbed_power(std::size_t state, std::size_t organ, std::size_t band) const {
+    return absorbed[(state * organs + organ) * bands + band];
+  }
 };
 
 /// Absorbed per one-sided area is (1 - rho_f - tau) E_f + (1 - rho_b - tau) E_b [W m^-2]; organs take area-weighted sums in double.
