@@ -240,7 +240,6 @@ class Program {
     app_.set_version_flag("--version", "sunfleck " + software_version(), "print the version and exit");
     app_.require_subcommand(1);
     app_.get_formatter()->label("SUBCOMMAND", "VERB");
-    app_.get_formatter()->label("Subcommands", "Verbs");
     app_.set_help_flag("-h,--help", "print this help and exit");
     app_.footer(
         "Each verb has its own help: sunfleck VERB --help. Data go to standard output, progress and messages to standard error.\n"
@@ -283,7 +282,7 @@ class Program {
   void add(const std::string& name, const std::string& text, void (*declare)(CLI::App&, Options&), Options& options,
            int (*work)(const Options&, Progress&)) {
     CLI::App* verb = app_.add_subcommand(name, text);
-    verb->set_help_flag("-h,--help", "print this help and exit");
+    verb->group("Verbs")->set_help_flag("-h,--help", "print this help and exit");
     declare(*verb, options);
     work_.emplace_back(verb, [work, &options](Progress& progress) { return work(options, progress); });
     names_.push_back(name);
