@@ -30,7 +30,9 @@ std::uint64_t rays_for(std::size_t facets) {
   return static_cast<std::uint64_t>(2.0e6 * std::clamp(std::sqrt(1e5 / static_cast<double>(facets)), 0.3, 1.0));
 }
 
-/// Organs of plants drawn with a probability proportional to area; rising. All for sure if there are no more than `wanted`.
+/// Organs of plants, rising, drawn with a probability proportional to their area plus the mean area: small organs weigh little but
+/// tend to have the largest errors, and one drawn by its area alone would weigh as much as a large one. All for sure if there are no
+/// more than `wanted`. Shares of those drawn are area / probability, scaled to the area that they stand for together.
 std::vector<Checked> draw(const FacetScene& facets, const OrganTotals& solved, std::uint32_t wanted, double offset) {
   std::vector<Checked> population;
   double total = 0.0;
@@ -39,8 +41,9 @@ std::vector<Checked> draw(const FacetScene& facets, const OrganTotals& solved, s
       population.push_back({m, solved.area[m], false});
       total += solved.area[m];
     }
-  const auto certain_ones = [&] { return static_cast<std::size_t>(std::count_if(population.begin(), population.end(), [](const auto& c) { return c.certain; })); };
-  double rest = total;
+  const double mean = total / static_cast<double>(std::max<std::size_t>(population.size(), 1));
+  const auto size = [mean](const Checked& c) { return c.share + mean; };
+  double rest = 2.0 * total;
   std::size_t places = wanted;
   if (population.size() <= wanted) {
     for (auto& c : population) c.certain = true;
@@ -50,26 +53,26 @@ std::vector<Checked> draw(const FacetScene& facets, const OrganTotals& solved, s
       changed = false;
       const double step = rest / static_cast<double>(places);
       for (auto& c : population)
-        if (!c.certain && c.share >= step && places > 0) c.certain = changed = true, rest -= c.share, --places;
+        if (!c.certain && size(c) >= step && places > 0) c.certain = changed = true, rest -= size(c), --places;
     }
   }
   std::vector<Checked> chosen;
-  const std::size_t by_chance = population.size() > certain_ones() ? places : 0;
-  const double step = by_chance > 0 ? rest / static_cast<double>(by_chance) : 0.0;
-  double passed = 0.0, next = offset * step;
+  const double step = rest / static_cast<double>(std::max<std::size_t>(places, 1));
+  double passed = 0.0, next = offset * step, by_chance = 0.0, drawn = 0.0;
   for (const auto& c : population) {
     if (c.certain) {
       chosen.push_back({c.organ, c.share / total, true});
       continue;
     }
-    passed += c.share;
-    if (by_chance == 0 || passed <= next) continue;
-    chosen.push_back({c.organ, 0.0, false});
+    by_chance += c.share / total;
+    passed += size(c);
+    if (places == 0 || passed <= next) continue;
+    chosen.push_back({c.organ, c.share / size(c), false});
+    drawn += chosen.back().share;
     next += step;
   }
-  const auto drawn = static_cast<double>(std::count_if(chosen.begin(), chosen.end(), [](const auto& c) { return !c.certain; }));
   for (auto& c : chosen)
-    if (!c.certain) c.share = rest / total / drawn;
+    if (!c.certain) c.share *= by_chance / drawn;
   return chosen;
 }
 

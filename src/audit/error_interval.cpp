@@ -12,30 +12,26 @@ struct Mean {
   double skew = 0;  ///< third central moment of the mean, of those drawn by chance
 };
 
-/// Weighted mean, and its variance from those drawn by chance and the noise of those taken for sure.
+/// Weighted mean, and its variance (a ratio estimator's) from those drawn by chance and the noise of those taken for sure.
 template <class Value, class Noise>
 Mean mean_of(std::span<const OrganError> organs, Value value, Noise noise) {
   Mean mean;
-  double drawn = 0.0, share_of_drawn = 0.0;
-  std::size_t n = 0;
+  double drawn = 0.0, share_of_drawn = 0.0, n = 0.0;
   for (const auto& o : organs) {
     mean.value += o.share * value(o);
     if (o.certain)
       mean.variance += o.share * o.share * noise(o);
     else
-      drawn += value(o), share_of_drawn += o.share, ++n;
+      drawn += o.share * value(o), share_of_drawn += o.share, n += 1.0;
   }
-  if (n < 2) return mean;
-  drawn /= static_cast<double>(n);
-  double square = 0.0, cube = 0.0;
+  if (n < 2.0 || !(share_of_drawn > 0.0)) return mean;
+  drawn /= share_of_drawn;
   for (const auto& o : organs)
     if (!o.certain) {
-      const double d = value(o) - drawn;
-      square += d * d, cube += d * d * d;
+      const double d = o.share * (value(o) - drawn);
+      mean.variance += d * d * n / (n - 1.0);
+      mean.skew += d * d * d;
     }
-  const double count = static_cast<double>(n);
-  mean.variance += share_of_drawn * share_of_drawn * square / (count * (count - 1.0));
-  mean.skew = share_of_drawn * share_of_drawn * share_of_drawn * cube / (count * count * count);
   return mean;
 }
 

@@ -101,7 +101,7 @@ TEST_CASE("certificate: the same for any number of threads; large organs and sma
   CHECK(one.reference == two.reference);
   CHECK(one.rmse == two.rmse);
   CHECK(one.rays == two.rays);
-  settings.organs = 64;
+  settings.organs = 96;
   const auto some = certify(scene, run.facets, totals, run.report.balance, settings, silent());
   for (std::uint32_t large = 0; large < 150; large += 15) CHECK(std::count(some.organs.begin(), some.organs.end(), large) == 1);
   CHECK(std::is_sorted(some.organs.begin(), some.organs.end()));
