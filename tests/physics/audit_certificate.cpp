@@ -20,7 +20,7 @@ Scene canopy(const std::vector<double>& reflectance, const std::vector<double>& 
   sky(scene, SkyModel::standard_overcast, 90);
   auto shapes = leaves(150, 0.12, {1, 1, 0.5}, 9);
   for (std::size_t i = 0; i < shapes.size(); i += 15)  // some organs are much larger than others
-    for (auto& p : shapes[i].vertices) p = shapes[i].vertices[0] + 2.0 * (p - shapes[i].vertices[0]);
+    for (auto& p : shapes[i].vertices) p = shapes[i].vertices[0] + 3.0 * (p - shapes[i].vertices[0]);
   add(scene, "canopy", shapes, 0);
   return scene;
 }

@@ -20,8 +20,8 @@ struct CertificateSettings {
   std::uint64_t rays = 0;           ///< to spend, about; 0 = 2 million up to 10^5 facets, then less with their root, 600,000 from 1.1 10^6 on
 };
 
-/// Checks organs of plants, drawn with a probability proportional to their area plus the mean area (systematic sampling in scene order;
-/// organs larger than the sampling step are taken for sure) and weighted by area over probability, by paths from points uniform over each organ's area. Estimates, per band, over all states
+/// Checks organs of plants, drawn with a probability proportional to their area plus three times the mean area (systematic sampling in
+/// scene order; organs larger than the sampling step are taken for sure) and weighted by area over probability, by paths from points uniform over each organ's area. Estimates, per band, over all states
 /// together (x solved, r reference, per area; w area; the Error definition of docs/formats-result.md):
 ///   rmse^2 = max(0, sum w ((x - r)^2 - var r) / sum w), bias = sum w (x - r) / sum w, over the mean of r,
 /// where the mean of r is the mean of x over *all* organs less the bias, which is far less noisy than that of the checked ones.
