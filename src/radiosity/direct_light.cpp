@@ -23,15 +23,16 @@ void fill_unsampled(const Elements& e, const std::vector<bool>& unsampled, std::
   for (std::size_t i = 0; i < e.size(); ++i) {
     double sum[2] = {0, 0};
     std::uint32_t known = 0;
-    for (std::uint32_t c = e.first_cell[i]; c < e.first_cell[i + 1]; ++c)
-      if (!unsampled[c]) {
+    const auto first = e.cells.begin() + e.first_cell[i], last = e.cells.begin() + e.first_cell[i + 1];
+    for (auto c = first; c != last; ++c)
+      if (!unsampled[*c]) {
         ++known;
-        for (int side = 0; side < 2; ++side) sum[side] += value[2 * c + side];
+        for (int side = 0; side < 2; ++side) sum[side] += value[2 * *c + side];
       }
-    if (known == 0 || known == e.first_cell[i + 1] - e.first_cell[i]) continue;
-    for (std::uint32_t c = e.first_cell[i]; c < e.first_cell[i + 1]; ++c)
-      if (unsampled[c])
-        for (int side = 0; side < 2; ++side) value[2 * c + side] = static_cast<float>(sum[side] / known);
+    if (known == 0 || known == static_cast<std::uint32_t>(last - first)) continue;
+    for (auto c = first; c != last; ++c)
+      if (unsampled[*c])
+        for (int side = 0; side < 2; ++side) value[2 * *c + side] = static_cast<float>(sum[side] / known);
   }
 }
 
@@ -45,9 +46,6 @@ class DirectLightSolver {
       : scene_(scene), e_(elements), s_(elements.surface), settings_(settings), timings_(timings), progress_(progress) {}
 
   DirectLight run() {
-    row_of_cell_.resize(s_.cells());
-    for (std::uint32_t t = 0; t < s_.size(); ++t)
-      for (std::uint32_t c = s_.first_cell[t]; c < s_.first_cell[t + 1]; ++c) row_of_cell_[c] = t;
     list_sources();
     Stopwatch sky_watch;
     if (!skies_.empty()) sky();
@@ -122,7 +120,7 @@ class DirectLightSolver {
             const float lines = counts[i].all[c];
             if (lines == 0.0f) continue;
             all[c] += lines;
-            const auto t = row_of_cell_[c];
+            const auto t = e_.row_of_cell[c];
             const bool front_up = s_.normal[0][t] * dx + s_.normal[1][t] * dy + s_.normal[2][t] * dz > 0.0f;
             const std::size_t up = 2 * c + (front_up ? 0 : 1);
             out_.sky_seen[up] += counts[i].visible[c];
@@ -183,14 +181,14 @@ class DirectLightSolver {
       }
       total += all;
       unsampled[c] = all == 0.0f;
-      if (all > 0.0f) lit[2 * c + (cosine[row_of_cell_[c]] > 0.0f ? 0 : 1)] = visible / all;
+      if (all > 0.0f) lit[2 * c + (cosine[e_.row_of_cell[c]] > 0.0f ? 0 : 1)] = visible / all;
     }
     // an unsampled cell's lit side may be the other one than its element's mean says: keep the fraction, move it to the side that faces the sun
     fill_unsampled(e_, unsampled, lit);
     for (std::size_t c = 0; c < cells; ++c)
       if (unsampled[c]) {
         const float fraction = std::min(1.0f, lit[2 * c] + lit[2 * c + 1]);
-        const bool front = cosine[row_of_cell_[c]] > 0.0f;
+        const bool front = cosine[e_.row_of_cell[c]] > 0.0f;
         lit[2 * c] = front ? fraction : 0.0f;
         lit[2 * c + 1] = front ? 0.0f : fraction;
       }
@@ -208,7 +206,6 @@ class DirectLightSolver {
   const RadiositySettings& settings_;
   Timings& timings_;
   Progress& progress_;
-  std::vector<std::uint32_t> row_of_cell_;
   std::vector<const Sky*> skies_;
   std::vector<const Sun*> suns_;
   DirectLight out_;

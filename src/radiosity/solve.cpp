@@ -31,7 +31,7 @@ class RadiositySolver {
     report_.method = settings_.method == RadiosityMethod::direct ? "direct" : settings_.method == RadiosityMethod::flat ? "flat" : "clustering";
     const bool scatter = settings_.method != RadiosityMethod::direct;
     Stopwatch watch;
-    elements_ = make_elements(scene_, facets_, settings_.density, settings_.method == RadiosityMethod::flat);
+    elements_ = make_elements(scene_, facets_, settings_);
     timed("elements", watch);
     report_.counts.emplace_back("elements", elements_.size());
     report_.counts.emplace_back("cells", elements_.surface.cells());
@@ -40,8 +40,10 @@ class RadiositySolver {
     report_.counts.emplace_back("direct_fragments", direct_.fragments);
     report_.memory.emplace_back("direct", direct_.bytes());
     report_.balance.assign(states_, std::vector<Balance>(bands_));
-    gathered_.assign(2 * elements_.size() * columns_, 0.0f);
-    if (scatter) solve_scattering();
+    if (scatter)
+      solve_scattering();
+    else
+      gathered_.assign(2 * elements_.size() * columns_, 0.0f);
     watch = {};
     write_rows();
     timed("rows", watch);
@@ -66,34 +68,42 @@ class RadiositySolver {
   /// Fraction of a side's hemisphere that is not open sky.
   float rest(std::size_t cell_side) const { return direct_.sky_seen.empty() ? 1.0f : std::max(0.0f, 1.0f - direct_.sky_seen[cell_side]); }
 
-  /// Area means over each element's cells: direct irradiance, and the fraction of the hemisphere that is not open sky.
-  void element_sources() {
-    const std::size_t sides = 2 * elements_.size();
+  float enclosed(std::size_t cell) const { return enclosed_.empty() ? 0.0f : enclosed_[cell]; }
+
+  /// Per part: its area, and area means over its cells of the direct irradiance and of the fraction of the hemisphere that is not open
+  /// sky. No direct light reaches enclosed parts.
+  void part_sources(const LineLinks& links) {
+    const std::size_t sides = links.sides();
     source_.assign(sides * columns_, 0.0f);
-    element_rest_.assign(sides, 1.0f);
-    row_of_cell_.resize(elements_.surface.cells());
+    part_rest_.assign(sides, 1.0f);
+    part_area_.assign(sides / 2, 0.0f);
     const auto& s = elements_.surface;
-    for (std::uint32_t t = 0; t < s.size(); ++t)
-      for (std::uint32_t c = s.first_cell[t]; c < s.first_cell[t + 1]; ++c) row_of_cell_[c] = t;
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, elements_.size(), 256), [&](const auto& range) {
       std::vector<double> sum(2 * columns_);
       for (std::size_t i = range.begin(); i < range.end(); ++i) {
-        double area = 0, open[2] = {0, 0};
+        double area = 0, hidden = 0, rest_of[2] = {0, 0};
         std::fill(sum.begin(), sum.end(), 0.0);
-        for (std::uint32_t c = elements_.first_cell[i]; c < elements_.first_cell[i + 1]; ++c) {
-          const auto t = row_of_cell_[c];
+        for (std::uint32_t k = elements_.first_cell[i]; k < elements_.first_cell[i + 1]; ++k) {
+          const auto c = elements_.cells[k];
+          const auto t = elements_.row_of_cell[c];
           const double a = s.split[t] > 0 ? s.cell_area[t] : 0.0;
           if (a == 0.0) continue;
           area += a;
+          hidden += a * enclosed(c);
           for (std::size_t side = 0; side < 2; ++side) {
-            open[side] += a * rest(2 * c + side);
-            for (std::size_t k = 0; k < columns_; ++k) sum[side * columns_ + k] += a * direct_irradiance(t, 2 * c + side, k / bands_, k % bands_);
+            rest_of[side] += a * std::max(0.0f, rest(2 * c + side) - enclosed(c));
+            for (std::size_t column = 0; column < columns_; ++column)
+              sum[side * columns_ + column] += a * direct_irradiance(t, 2 * c + side, column / bands_, column % bands_);
           }
         }
-        if (area == 0.0) continue;
+        const double open = area - hidden;
+        if (!links.enclosed_part.empty() && links.enclosed_part[i] != LineLinks::none) part_area_[links.enclosed_part[i]] = static_cast<float>(hidden);
+        part_area_[i] = static_cast<float>(open);
+        if (open <= 1e-6 * area || area == 0.0) continue;
         for (std::size_t side = 0; side < 2; ++side) {
-          element_rest_[2 * i + side] = static_cast<float>(open[side] / area);
-          for (std::size_t k = 0; k < columns_; ++k) source_[(2 * i + side) * columns_ + k] = static_cast<float>(sum[side * columns_ + k] / area);
+          part_rest_[2 * i + side] = static_cast<float>(rest_of[side] / open);
+          for (std::size_t column = 0; column < columns_; ++column)
+            source_[(2 * i + side) * columns_ + column] = static_cast<float>(sum[side * columns_ + column] / open);
         }
       }
     });
@@ -101,9 +111,10 @@ class RadiositySolver {
 
   void solve_scattering() {
     Stopwatch watch;
-    element_sources();
-    progress_.check();
     LineLinks links = line_links(elements_, settings_, progress_);
+    enclosed_part_ = links.enclosed_part;
+    enclosed_ = links.enclosed;
+    part_sources(links);
     timed("lines", watch);
     report_.counts.emplace_back("directions", settings_.density.directions);
     report_.counts.emplace_back("fragments", links.fragments);
@@ -118,38 +129,42 @@ class RadiositySolver {
       if (sky_known) sky_lines[i] = links.open_up[i] + (sky_below ? links.open_down[i] : 0.0f);
       const float all = links.lines[i], open = links.open_up[i] + links.open_down[i], left = all - sky_lines[i];
       if (sky_known)
-        escape_[i] = 1.0f - element_rest_[i] + (left > 0.0f ? element_rest_[i] * (open - sky_lines[i]) / left : 0.0f);
+        escape_[i] = 1.0f - part_rest_[i] + (left > 0.0f ? part_rest_[i] * (open - sky_lines[i]) / left : 0.0f);
       else
         escape_[i] = all > 0.0f ? open / all : 0.0f;
     }
+    const auto whole = links.whole;
     std::unique_ptr<Gather> gather = std::make_unique<FlatGather>(std::move(links), sky_lines);
     report_.counts.emplace_back("links", gather->links());
     report_.memory.emplace_back("links", gather->bytes());
     progress_.line(fmt::format("{} elements, {} links", elements_.size(), gather->links()));
 
     watch = {};
-    const Reflection reflection(facets_, elements_, states_);
+    std::vector<std::uint32_t> material(whole.size());
+    for (std::size_t i = 0; i < material.size(); ++i) material[i] = elements_.material[whole[i]];
+    const Reflection reflection(facets_, std::move(material), states_);
     Field radiosity(sides * columns_), irradiance = source_;
     const auto apply = [&](const Field& x, Field& kx) {
       reflection.apply(x, radiosity);
       gather->gather(radiosity, kx, columns_);
       tbb::parallel_for(tbb::blocked_range<std::size_t>(0, sides, 4096), [&](const auto& range) {
         for (std::size_t i = range.begin(); i < range.end(); ++i)
-          for (std::size_t c = 0; c < columns_; ++c) kx[i * columns_ + c] *= element_rest_[i];
+          for (std::size_t c = 0; c < columns_; ++c) kx[i * columns_ + c] *= part_rest_[i];
       });
     };
     std::vector<float> weight(sides);
-    for (std::size_t i = 0; i < sides; ++i) weight[i] = elements_.area[i / 2];
+    for (std::size_t i = 0; i < sides; ++i) weight[i] = part_area_[i / 2];
     const double tolerance = settings_.tolerance > 0 ? settings_.tolerance : settings_.density.tolerance;
     const auto result = gmres(apply, source_, weight, columns_, tolerance, most_iterations, irradiance, progress_);
     for (std::size_t k = 0; k < result.residuals.size(); ++k)
       report_.convergence.push_back({0, static_cast<std::uint32_t>(k), result.residuals[k], gather->links(), watch.seconds()});
     if (!result.converged) report_.status = SolveStatus::not_converged;
     reflection.apply(irradiance, radiosity);
+    gathered_.assign(sides * columns_, 0.0f);
     gather->gather(radiosity, gathered_, columns_);
     for (std::size_t i = 0; i < sides; ++i)
       for (std::size_t c = 0; c < columns_; ++c)
-        report_.balance[c / bands_][c % bands_].escaped += static_cast<double>(elements_.area[i / 2]) * radiosity[i * columns_ + c] * escape_[i];
+        report_.balance[c / bands_][c % bands_].escaped += static_cast<double>(part_area_[i / 2]) * radiosity[i * columns_ + c] * escape_[i];
     timed("iteration", watch);
     progress_.line(fmt::format("{} applications of the operator, residual {:.1e}", result.residuals.size(), result.residuals.back()));
   }
@@ -192,6 +207,14 @@ class RadiositySolver {
         for (auto& b : state) b.escaped = b.incident - b.leaves - b.ground;
   }
 
+  float scattered_irradiance(std::uint32_t cell, std::size_t side, std::size_t column) const {
+    const auto element = elements_.element_of_cell[cell];
+    const float inside = enclosed(cell), seen = gathered_[(2 * element + side) * columns_ + column];
+    if (inside == 0.0f) return rest(2 * cell + side) * seen;
+    const float seen_inside = gathered_[(2 * enclosed_part_[element] + side) * columns_ + column];
+    return std::max(0.0f, rest(2 * cell + side) - inside) * seen + inside * seen_inside;
+  }
+
   void facet_row(std::size_t t, std::size_t facet, std::size_t i, std::size_t count, std::vector<float>& irradiance, std::vector<float>& sunlit,
                  std::vector<Balance>& balance) {
     const auto& s = elements_.surface;
@@ -207,7 +230,7 @@ class RadiositySolver {
           float direct = 0.0f, scattered = 0.0f;
           for (std::uint32_t c = begin; c < end; ++c) {
             direct += share * direct_irradiance(t, 2 * c + side, state, band);
-            scattered += share * rest(2 * c + side) * gathered_[(2 * elements_.element_of_cell[c] + side) * columns_ + column];
+            scattered += share * scattered_irradiance(c, side, column);
           }
           const float e = direct + scattered;
           irradiance[((state * count + i) * 2 + side) * bands_ + band] = e;
@@ -233,9 +256,10 @@ class RadiositySolver {
   const std::size_t states_, bands_, columns_;
   Elements elements_;
   DirectLight direct_;
-  std::vector<std::uint32_t> row_of_cell_;
   Field source_, gathered_;
-  std::vector<float> element_rest_, escape_;
+  std::vector<float> part_rest_, part_area_, escape_;
+  std::vector<std::uint32_t> enclosed_part_;
+  std::vector<float> enclosed_;
   SolveReport report_;
 };
 

@@ -4,7 +4,8 @@
 
 namespace sunfleck {
 
-Reflection::Reflection(const FacetScene& facets, const Elements& elements, std::size_t states) : elements_(elements), columns_(states * facets.bands) {
+Reflection::Reflection(const FacetScene& facets, std::vector<std::uint32_t> material_of_part, std::size_t states)
+    : material_(std::move(material_of_part)), columns_(states * facets.bands) {
   for (const auto& m : facets.materials)
     for (std::size_t c = 0; c < columns_; ++c) {
       front_.push_back(m.reflectance_front[c % facets.bands]);
@@ -15,9 +16,9 @@ Reflection::Reflection(const FacetScene& facets, const Elements& elements, std::
 
 void Reflection::apply(const Field& irradiance, Field& radiosity) const {
   const std::size_t n = columns_;
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, elements_.size(), 1024), [&](const auto& range) {
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, material_.size(), 1024), [&](const auto& range) {
     for (std::size_t i = range.begin(); i < range.end(); ++i) {
-      const std::size_t m = elements_.material[i] * n;
+      const std::size_t m = material_[i] * n;
       const float* e = irradiance.data() + 2 * i * n;
       float* b = radiosity.data() + 2 * i * n;
       for (std::size_t c = 0; c < n; ++c) {

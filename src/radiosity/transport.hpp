@@ -10,7 +10,7 @@
 
 namespace sunfleck {
 
-/// Fields hold one value per element side and column (a band of a state): value[side * columns + column].
+/// Fields hold one value per side of a part (an element or the enclosed part of one) and column (a band of a state): value[side * columns + column].
 using Field = std::vector<float>;
 
 /// Gathers radiosity over what is not open sky: S_i = sum_j count_ij B_j / (lines_i - sky lines_i).
@@ -23,16 +23,16 @@ class Gather {
   virtual std::size_t bytes() const = 0;
 };
 
-/// Optics per element, in the columns' bands.
+/// Optics per part, in the columns' bands.
 class Reflection {
  public:
-  Reflection(const FacetScene& facets, const Elements& elements, std::size_t states);
+  Reflection(const FacetScene& facets, std::vector<std::uint32_t> material_of_part, std::size_t states);
   /// B_f = rho_f E_f + tau E_b, B_b = rho_b E_b + tau E_f.
   void apply(const Field& irradiance, Field& radiosity) const;
   std::size_t columns() const { return columns_; }
 
  private:
-  const Elements& elements_;
+  std::vector<std::uint32_t> material_;  ///< [parts]
   std::size_t columns_;
   std::vector<float> front_, back_, through_;  ///< [materials][columns]
 };

@@ -114,6 +114,12 @@ std::vector<OutsideArea> outside_focus(const Surface& surface, const Projection&
     const Vec3 eu = (c[1] - c[0]) / static_cast<double>(k), ev = (c[2] - c[0]) / static_cast<double>(k);
     const bool front_up = surface.normal[0][t] * p.direction.x + surface.normal[1][t] * p.direction.y + surface.normal[2][t] * p.direction.z > 0;
     const double whole = 0.5 * std::fabs(eu.x * ev.y - eu.y * ev.x);
+    const Vec3 low = glm::min(glm::min(c[0], c[1]), c[2]), high = glm::max(glm::max(c[0], c[1]), c[2]);
+    if (low.x >= 0.0 && low.y >= 0.0 && high.x <= p.columns && high.y <= p.rows) continue;
+    if (high.x <= 0.0 || high.y <= 0.0 || low.x >= p.columns || low.y >= p.rows) {
+      for (std::uint32_t cell = surface.first_cell[t]; cell < surface.first_cell[t + 1]; ++cell) outside.push_back({cell, static_cast<float>(whole), front_up});
+      continue;
+    }
     for (int j = 0; j < k; ++j)
       for (int i = 0; i + j < k; ++i)
         for (int upper = 0; upper < (i + j < k - 1 ? 2 : 1); ++upper) {

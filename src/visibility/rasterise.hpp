@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 
@@ -41,8 +42,8 @@ void rasterise(const Surface& s, const Projection& p, const std::uint32_t* list,
   const float dx = f(p.direction.x), dy = f(p.direction.y), dz = f(p.direction.z);
   for (std::size_t first = begin; first < end; first += block) {
     const int n = static_cast<int>(std::min<std::size_t>(block, end - first));
-    alignas(64) float X[3][block], Y[3][block], Z[3][block];
-    alignas(64) int ya[block], yb[block];
+    alignas(64) float X[3][block] = {}, Y[3][block] = {}, Z[3][block] = {};
+    alignas(64) int ya[block], yb[block], meets[block];
     for (int k = 0; k < 3; ++k) {
       const float* cx = s.corner[3 * k].data();
       const float* cy = s.corner[3 * k + 1].data();
@@ -63,21 +64,25 @@ void rasterise(const Surface& s, const Projection& p, const std::uint32_t* list,
         }
       }
     }
-    for (int i = 0; i < n; ++i) {
+    // most triangles of a coarse grid meet no pixel centre: sort them out sixteen at a time
+    for (int i = 0; i < block; ++i) {
       const float low = std::min(std::min(Y[0][i], Y[1][i]), Y[2][i]), high = std::max(std::max(Y[0][i], Y[1][i]), Y[2][i]);
+      const float left = std::min(std::min(X[0][i], X[1][i]), X[2][i]), right = std::max(std::max(X[0][i], X[1][i]), X[2][i]);
       ya[i] = static_cast<int>(std::ceil(low - 0.5f));
       yb[i] = static_cast<int>(std::ceil(high - 0.5f)) - 1;
+      const int xa = static_cast<int>(std::ceil(left - 0.5f)), xb = static_cast<int>(std::ceil(right - 0.5f)) - 1;
+      meets[i] = static_cast<int>(ya[i] <= yb[i]) & static_cast<int>(xa <= xb);
     }
-    for (int i = 0; i < n; ++i) {
-      if (ya[i] > yb[i]) continue;
+    unsigned hits = 0;
+    for (int i = 0; i < n; ++i) hits |= static_cast<unsigned>(meets[i]) << i;
+    for (; hits != 0; hits &= hits - 1) {
+      const int i = std::countr_zero(hits);
       if (!p.wraps && (yb[i] < row_begin || ya[i] >= row_end)) continue;
       const std::uint32_t t = list ? list[first + i] : static_cast<std::uint32_t>(first + i);
       if (s.split[t] == 0) continue;
       const float ax = X[1][i] - X[0][i], ay = Y[1][i] - Y[0][i], bx = X[2][i] - X[0][i], by = Y[2][i] - Y[0][i];
       const float area = ax * by - bx * ay;
       if (std::fabs(area) < 1e-12f) continue;
-      const float left = std::min(std::min(X[0][i], X[1][i]), X[2][i]), right = std::max(std::max(X[0][i], X[1][i]), X[2][i]);
-      if (std::ceil(left - 0.5f) > std::ceil(right - 0.5f) - 1.0f) continue;
       const float inverse = 1.0f / area;
       ProjectedTriangle triangle;
       triangle.index = t;

@@ -17,7 +17,7 @@ enum class RadiosityMethod {
 struct RadiosityDensity {
   std::uint32_t directions;      ///< global-line directions over the hemisphere [-]
   double lines_per_element;      ///< mean lines that meet an element, per direction [-]
-  double elements_per_organ;     ///< elements of an organ of the area-weighted mean size [-]
+  double elements_per_organ;     ///< elements of an organ of the mean size [-]
   std::uint32_t sky_directions;  ///< directions for the sky's visibility [-]
   double sky_lines_per_organ;    ///< per direction [-]
   std::uint32_t sun_samples;     ///< points of the sun's disc, each with a grid of its own [-]
