@@ -9,6 +9,9 @@
 
 namespace sunfleck {
 
+/// Clusters between which far links run have at least this many organs, but where the tree has no smaller node.
+inline constexpr std::uint32_t organs_per_cluster = 12;
+
 /// A node of the cluster tree: a run of organs in tree order. Children come after their parent; leaves hold one organ.
 struct ClusterNode {
   std::uint32_t first_organ = 0, organ_count = 0;  ///< positions in ClusterOrder::organs

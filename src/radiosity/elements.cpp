@@ -5,8 +5,6 @@
 
 #include <sunfleck/core/memory.hpp>
 
-#include "cluster_order.hpp"
-
 namespace sunfleck {
 
 namespace {
@@ -29,13 +27,12 @@ double mean_organ_area(const FacetScene& facets) {
 
 /// Organs in tree order, but within small clusters those of one material together, so that small ones can share an element.
 std::vector<std::uint32_t> gather_materials(const ClusterOrder& tree, const std::vector<std::uint32_t>& material_of_organ) {
-  constexpr std::uint32_t most_organs = 12;
   auto organs = tree.organs;
   std::vector<std::uint32_t> stack{0};
   while (!stack.empty()) {
     const auto& node = tree.nodes[stack.back()];
     stack.pop_back();
-    if (node.organ_count <= most_organs)
+    if (node.organ_count <= organs_per_cluster)
       std::stable_sort(organs.begin() + node.first_organ, organs.begin() + node.first_organ + node.organ_count,
                        [&](std::uint32_t a, std::uint32_t b) { return material_of_organ[a] < material_of_organ[b]; });
     else
@@ -76,7 +73,7 @@ Elements make_elements(const Scene& scene, const FacetScene& facets, const Radio
   const std::size_t n = facets.size();
   e.organ_area = mean_organ_area(facets);
   e.element_area = e.organ_area / settings.density.elements_per_organ;
-  const auto tree = cluster_order(scene, facets);
+  e.tree = cluster_order(scene, facets);
   // facets by organ, file order within
   std::vector<std::uint32_t> start(facets.organs.size() + 1, 0), members(n), material_of_organ(facets.organs.size(), 0);
   for (std::size_t f = 0; f < n; ++f) ++start[facets.organ[f] + 1];
@@ -86,7 +83,7 @@ Elements make_elements(const Scene& scene, const FacetScene& facets, const Radio
     for (std::size_t f = 0; f < n; ++f) members[cursor[facets.organ[f]]++] = static_cast<std::uint32_t>(f);
   }
   for (std::size_t f = n; f-- > 0;) material_of_organ[facets.organ[f]] = facets.optics[f];
-  const auto organs = gather_materials(tree, material_of_organ);
+  const auto organs = gather_materials(e.tree, material_of_organ);
 
   const bool ground_is_flat = scene.ground && !scene.ground->mesh && !scene.periodic;
   Box plants;

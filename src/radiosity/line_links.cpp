@@ -1,15 +1,18 @@
 #include "line_links.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
+#include <limits>
+#include <numbers>
 #include <numeric>
 
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_invoke.h>
 
 #include <sunfleck/core/memory.hpp>
 #include <sunfleck/core/sampling.hpp>
-#include <sunfleck/visibility/projection.hpp>
+
+#include "line_collector.hpp"
 
 namespace sunfleck {
 
@@ -17,106 +20,265 @@ namespace {
 
 constexpr std::uint64_t line_stream = 0x9fb21c651e98df25ULL;
 
-constexpr std::uint32_t enclosed_bit = 0x80000000u;
-
-struct SidePair {
-  std::uint32_t low, high;  ///< the lower fragment's upward side and the upper fragment's downward side
-};
-
-/// What one direction's lines say. Sides are 2 * element + side, with the enclosed bit.
-struct DirectionLines {
-  std::vector<SidePair> pairs;
-  std::vector<std::uint32_t> open_up, open_down;  ///< sides, once per line
-  std::vector<OutsideArea> outside;
-};
-
-class LineCollector {
+/// Collects one half of the links while directions come in, bin by bin.
+class HalfBuilder {
  public:
-  LineCollector(const Elements& elements, bool find_enclosed)
-      : e_(elements), reach_(std::sqrt(elements.organ_area)), find_enclosed_(find_enclosed), met_(find_enclosed ? elements.surface.cells() : 0),
-        inside_(met_.size()) {}
-
-  void collect(const LineBundle& bundle, DirectionLines& out) {
-    thread_local std::vector<std::uint32_t> side;
-    out.pairs.reserve(bundle.side.size());
-    for (std::size_t q = 0; q + 1 < bundle.start.size(); ++q) {
-      const std::uint32_t begin = bundle.start[q], n = bundle.start[q + 1] - begin;
-      if (n == 0) continue;
-      side.resize(n);
-      for (std::uint32_t k = 0; k < n; ++k) {
-        const std::uint32_t cell_side = bundle.side[begin + k];
-        side[k] = 2 * e_.element_of_cell[cell_side >> 1] + (cell_side & 1u);
-      }
-      if (find_enclosed_) mark_enclosed(bundle, begin, n, side.data());
-      out.open_down.push_back(side[0] ^ 1u);
-      for (std::uint32_t k = 1; k < n; ++k) out.pairs.push_back({side[k - 1], side[k] ^ 1u});
-      out.open_up.push_back(side[n - 1]);
+  HalfBuilder(const Elements& elements, const ClusterTree* tree) : e_(elements), tree_(tree) {
+    const std::size_t sides = 2 * e_.size();
+    open_up_.assign(sides, 0.0f);
+    open_down_.assign(sides, 0.0f);
+    if (tree_) {
+      far_.of_side.assign(sides * channels, 0);
+      far_.through.assign(tree_->size() * channels, 0);
+      far_.linked.assign(tree_->size() * channels, 0);
+      by_node_.resize(tree_->size() + 1);
     }
   }
 
-  /// Fraction of each cell that is enclosed; empty if none is.
-  std::vector<float> enclosed() const {
-    std::vector<float> fraction;
-    for (std::size_t c = 0; c < inside_.size(); ++c)
-      if (inside_[c] > 0) {
-        if (fraction.empty()) fraction.assign(inside_.size(), 0.0f);
-        fraction[c] = static_cast<float>(inside_[c]) / static_cast<float>(met_[c]);
+  /// All directions of one bin that belong to this half, in order.
+  void add_bin(std::uint32_t bin, std::vector<DirectionLines*> lines) {
+    std::vector<FarPair> far;
+    for (auto* d : lines) {
+      for (const auto s : d->open_up) add_open(open_up_, enclosed_up_, s);
+      for (const auto s : d->open_down) add_open(open_down_, enclosed_down_, s);
+      for (const auto& o : d->outside) {
+        const std::uint32_t up = 2 * e_.element_of_cell[o.cell] + (o.front_up ? 0 : 1);
+        open_up_[up] += o.lines;
+        open_down_[up ^ 1u] += o.lines;
       }
-    return fraction;
+      for (const auto& p : d->far) {
+        auto& low = far_.of_side[std::size_t{p.low} * channels + 2 * bin];
+        auto& high = far_.of_side[std::size_t{p.high} * channels + 2 * bin + 1];
+        if (low == 255 || high == 255) {  // a large element: its lines stay links of its own
+          d->near.push_back({p.low, p.high});
+          continue;
+        }
+        ++low;
+        ++high;
+        ++far_.through[std::size_t{tree_->cluster_of_element[p.low >> 1]} * channels + 2 * bin];
+        ++far_.through[std::size_t{tree_->cluster_of_element[p.high >> 1]} * channels + 2 * bin + 1];
+        ++far_.linked[std::size_t{p.low_node} * channels + 2 * bin];
+        ++far_.linked[std::size_t{p.high_node} * channels + 2 * bin + 1];
+        far.push_back(p);
+      }
+      near_.push_back(std::move(d->near));
+    }
+    if (!far.empty()) merge_far(bin, far);
+  }
+
+  HalfLinks finish(std::size_t sides, const std::vector<std::uint32_t>& enclosed_part) {
+    HalfLinks half;
+    const auto part_side = [&](std::uint32_t s) { return s & enclosed_bit ? 2 * enclosed_part[(s & ~enclosed_bit) >> 1] + (s & 1u) : s; };
+    half.open_up = std::move(open_up_);
+    half.open_down = std::move(open_down_);
+    half.open_up.resize(sides, 0.0f);
+    half.open_down.resize(sides, 0.0f);
+    for (const auto s : enclosed_up_) half.open_up[part_side(s)] += 1.0f;
+    for (const auto s : enclosed_down_) half.open_down[part_side(s)] += 1.0f;
+    half.lines.assign(sides, 0.0f);
+    near_rows(sides, part_side, half);
+    if (tree_) far_rows(half);
+    return half;
   }
 
  private:
-  std::uint32_t organ(std::uint32_t cell_side) const { return e_.organ_of_row[e_.row_of_cell[cell_side >> 1]]; }
+  static void add_open(std::vector<float>& open, std::vector<std::uint32_t>& enclosed, std::uint32_t side) {
+    if (side & enclosed_bit)
+      enclosed.push_back(side);
+    else
+      open[side] += 1.0f;
+  }
 
-  void mark_enclosed(const LineBundle& bundle, std::uint32_t begin, std::uint32_t n, std::uint32_t* side) {
-    const std::uint32_t* hit = bundle.side.data() + begin;
-    for (std::uint32_t k = 0; k < n; ++k) {
-      met_[hit[k] >> 1].fetch_add(1, std::memory_order_relaxed);
-      if (k == 0 || k + 1 == n) continue;
-      const auto own = organ(hit[k]);
-      std::uint32_t low = k, high = k;
-      while (low > 0 && organ(hit[low]) == own) --low;
-      while (high + 1 < n && organ(hit[high]) == own) ++high;
-      const auto around = organ(hit[low]);
-      const bool same_side = (hit[low] & 1u) == ((hit[high] & 1u) ^ 1u);
-      if (around == own || around != organ(hit[high]) || !same_side ||
-          (bundle.depth[begin + high] - bundle.depth[begin + low]) * bundle.depth_to_length > reach_)
-        continue;
-      side[k] |= enclosed_bit;
-      inside_[hit[k] >> 1].fetch_add(1, std::memory_order_relaxed);
+  /// Equal links become one with a count: bucket by receiving node, sort each bucket.
+  void merge_far(std::uint32_t bin, const std::vector<FarPair>& far) {
+    std::fill(by_node_.begin(), by_node_.end(), 0u);
+    for (const auto& p : far) ++by_node_[p.low_node + 1];
+    for (std::size_t i = 1; i < by_node_.size(); ++i) by_node_[i] += by_node_[i - 1];
+    other_.resize(far.size());
+    for (const auto& p : far) other_[by_node_[p.low_node]++] = p.high_node;
+    for (std::size_t node = 0, begin = 0; node + 1 < by_node_.size(); ++node) {
+      const std::size_t end = by_node_[node];
+      std::sort(other_.begin() + static_cast<std::ptrdiff_t>(begin), other_.begin() + static_cast<std::ptrdiff_t>(end));
+      for (std::size_t k = begin; k < end;) {
+        std::size_t last = k + 1;
+        while (last < end && other_[last] == other_[k] && last - k < std::numeric_limits<std::uint16_t>::max()) ++last;
+        merged_.push_back({static_cast<std::uint32_t>(node), other_[k], static_cast<std::uint16_t>(last - k), static_cast<std::uint16_t>(bin)});
+        k = last;
+      }
+      begin = end;
     }
   }
 
+  template <class PartSide>
+  void near_rows(std::size_t sides, const PartSide& part_side, HalfLinks& half) {
+    std::vector<std::uint32_t> start(sides + 1, 0);
+    for (auto& list : near_)
+      for (auto& p : list) {
+        p = {part_side(p.low), part_side(p.high)};
+        ++start[p.low + 1];
+        ++start[p.high + 1];
+      }
+    for (std::size_t i = 0; i < sides; ++i) start[i + 1] += start[i];
+    std::vector<std::uint32_t> column(start[sides]);
+    std::vector<std::uint32_t> cursor(start.begin(), start.end() - 1);
+    for (auto& list : near_) {
+      for (const auto& p : list) {
+        column[cursor[p.low]++] = p.high;
+        column[cursor[p.high]++] = p.low;
+      }
+      list = {};
+    }
+    auto& near = half.near;
+    std::vector<std::uint32_t> distinct(sides);
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, sides, 256), [&](const auto& range) {
+      for (std::size_t i = range.begin(); i < range.end(); ++i) {
+        const auto begin = column.begin() + start[i], end = column.begin() + start[i + 1];
+        std::sort(begin, end);
+        std::uint32_t n = 0;
+        for (auto k = begin; k != end; ++k) n += k == begin || *k != k[-1];
+        distinct[i] = n;
+        half.lines[i] = static_cast<float>(end - begin) + half.open_up[i] + half.open_down[i];
+      }
+    });
+    near.start.assign(sides + 1, 0);
+    for (std::size_t i = 0; i < sides; ++i) near.start[i + 1] = near.start[i] + distinct[i];
+    near.column.resize(near.start[sides]);
+    near.count.assign(near.start[sides], 0.0f);
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, sides, 256), [&](const auto& range) {
+      for (std::size_t i = range.begin(); i < range.end(); ++i) {
+        std::uint32_t out = near.start[i];
+        for (std::uint32_t k = start[i]; k < start[i + 1]; ++k) {
+          if (k > start[i] && column[k] != column[k - 1]) ++out;
+          near.column[out] = column[k];
+          near.count[out] += 1.0f;
+        }
+      }
+    });
+  }
+
+  void far_rows(HalfLinks& half) {
+    for (std::size_t i = 0; i < 2 * e_.size(); ++i) {
+      std::uint32_t lines = 0;
+      for (std::uint32_t q = 0; q < channels; ++q) lines += far_.of_side[i * channels + q];
+      half.lines[i] += static_cast<float>(lines);
+    }
+    // lines that are not linked at a node pass through its parent
+    for (std::size_t node = tree_->size(); node-- > 0;) {
+      const auto up = tree_->parent[node];
+      if (up == ClusterTree::none) continue;
+      for (std::uint32_t q = 0; q < channels; ++q) far_.through[up * channels + q] += far_.through[node * channels + q] - far_.linked[node * channels + q];
+    }
+    far_.first_link.assign(tree_->size() + 1, 0);
+    for (const auto& m : merged_) {
+      ++far_.first_link[m.low + 1];
+      ++far_.first_link[m.high + 1];
+    }
+    for (std::size_t i = 0; i < tree_->size(); ++i) far_.first_link[i + 1] += far_.first_link[i];
+    far_.links.resize(far_.first_link.back());
+    std::vector<std::uint32_t> cursor(far_.first_link.begin(), far_.first_link.end() - 1);
+    for (const auto& m : merged_) {
+      const auto above = static_cast<std::uint16_t>(2 * m.bin), below = static_cast<std::uint16_t>(2 * m.bin + 1);
+      far_.links[cursor[m.low]++] = {m.high * channels + below, m.count, above};
+      far_.links[cursor[m.high]++] = {m.low * channels + above, m.count, below};
+    }
+    merged_ = {};
+    half.far = std::move(far_);
+  }
+
+  struct MergedLink {
+    std::uint32_t low, high;
+    std::uint16_t count, bin;
+  };
+
   const Elements& e_;
-  const double reach_;  ///< no organ is thicker than this [m]
-  const bool find_enclosed_;
-  std::vector<std::atomic<std::uint32_t>> met_, inside_;  ///< [cells] lines; sums of integers do not depend on the order of work
+  const ClusterTree* tree_;
+  std::vector<float> open_up_, open_down_;
+  std::vector<std::uint32_t> enclosed_up_, enclosed_down_;
+  std::vector<std::vector<SidePair>> near_;
+  FarField far_;
+  std::vector<MergedLink> merged_;
+  std::vector<std::uint32_t> by_node_, other_;
 };
+
+std::size_t bytes_of_half(const HalfLinks& h) {
+  return bytes_of(h.near.start) + bytes_of(h.near.column) + bytes_of(h.near.count) + bytes_of(h.far.of_side) + bytes_of(h.far.through) + bytes_of(h.far.linked) +
+         bytes_of(h.far.first_link) + bytes_of(h.far.links) + bytes_of(h.lines) + bytes_of(h.open_up) + bytes_of(h.open_down);
+}
 
 }  // namespace
 
-std::size_t LineLinks::bytes() const {
-  return bytes_of(start) + bytes_of(column) + bytes_of(count) + bytes_of(lines) + bytes_of(open_up) + bytes_of(open_down) + bytes_of(whole) + bytes_of(enclosed_part) +
-         bytes_of(enclosed);
+std::uint32_t bin_of(const Vec3& d) {
+  // three rings of 4, 8 and 12 bins, in proportion to their areas
+  constexpr double ring_z[2] = {5.0 / 6.0, 0.5};
+  constexpr std::uint32_t ring_first[3] = {0, 4, 12}, ring_bins[3] = {4, 8, 12};
+  const int ring = d.z >= ring_z[0] ? 0 : d.z >= ring_z[1] ? 1 : 2;
+  const double turns = std::atan2(d.y, d.x) / (2.0 * std::numbers::pi);
+  const auto k = static_cast<std::uint32_t>((turns - std::floor(turns)) * ring_bins[ring]);
+  return ring_first[ring] + std::min(k, ring_bins[ring] - 1);
 }
 
-LineLinks line_links(const Elements& e, const RadiositySettings& settings, Progress& progress) {
+std::uint64_t LineLinks::link_count() const {
+  std::uint64_t n = 0;
+  for (const auto& h : half) n += h.near.column.size() + h.far.links.size();
+  return n;
+}
+
+std::size_t LineLinks::bytes() const {
+  return bytes_of_half(half[0]) + bytes_of_half(half[1]) + bytes_of(whole) + bytes_of(enclosed_part) + bytes_of(enclosed);
+}
+
+LineLinks line_links(const Elements& e, const ClusterTree* tree, const RadiositySettings& settings, Progress& progress) {
   const std::uint32_t directions = settings.density.directions;
   const double pitch = std::sqrt(0.5 * e.element_area / settings.density.lines_per_element);
-  std::vector<DirectionLines> found(directions);
-  LineCollector collector(e, settings.method != RadiosityMethod::flat);
-  tbb::parallel_for(std::uint32_t{0}, directions, [&](std::uint32_t d) {
-    if (progress.cancelled()) return;
-    thread_local LineBundle bundle;
-    const Vec3 direction = hemisphere_direction(d, directions, mix(settings.seed, line_stream));
-    const auto p = project_set_member(e.surface, direction, d, pitch, mix(settings.seed, line_stream, 1));
-    trace_lines(e.surface, p, bundle);
-    collector.collect(bundle, found[d]);
-    found[d].outside = outside_focus(e.surface, p);
-  });
-  progress.check();
-
   LineLinks links;
+  std::vector<bool> interior;
+  if (settings.method != RadiosityMethod::flat) interior = interior_sides(e, pitch, settings.seed, progress);
+  LineCollector collector(e, tree, settings.density.link_error, std::move(interior));
+  HalfBuilder builder[2] = {{e, tree}, {e, tree}};
+  // bin by bin, so that equal far links meet and are merged early
+  std::vector<Vec3> direction(directions);
+  std::vector<std::vector<std::uint32_t>> bins(direction_bins);
+  for (std::uint32_t d = 0; d < directions; ++d) {
+    direction[d] = hemisphere_direction(d, directions, mix(settings.seed, line_stream));
+    bins[bin_of(direction[d])].push_back(d);
+  }
+  std::uint32_t done = 0;
+  // at least two bins' worth of work for the threads at a time
+  for (std::uint32_t first = 0; first < direction_bins;) {
+    std::vector<std::uint32_t> batch;
+    std::uint32_t last = first;
+    while (last < direction_bins && (last == first || batch.size() < 8)) {
+      batch.insert(batch.end(), bins[last].begin(), bins[last].end());
+      ++last;
+    }
+    std::vector<DirectionLines> found(batch.size());
+    tbb::parallel_for(std::size_t{0}, batch.size(), [&](std::size_t i) {
+      if (progress.cancelled()) return;
+      thread_local LineBundle bundle;
+      const auto d = batch[i];
+      const auto p = project_set_member(e.surface, direction[d], d, pitch, mix(settings.seed, line_stream, 1));
+      trace_lines(e.surface, p, bundle);
+      collector.collect(bundle, found[i]);
+      found[i].outside = outside_focus(e.surface, p);
+    });
+    progress.check();
+    for (const auto& f : found) links.fragments += f.near.size() + f.far.size() + f.open_up.size();
+    const auto add = [&](std::uint32_t h) {
+      std::size_t i = 0;
+      for (std::uint32_t bin = first; bin < last; ++bin) {
+        std::vector<DirectionLines*> mine;
+        for (const auto d : bins[bin]) {
+          if (d % 2 == h) mine.push_back(&found[i]);
+          ++i;
+        }
+        builder[h].add_bin(bin, std::move(mine));
+      }
+    };
+    tbb::parallel_invoke([&] { add(0); }, [&] { add(1); });
+    done += static_cast<std::uint32_t>(batch.size());
+    progress.fraction("lines", static_cast<double>(done) / directions);
+    first = last;
+  }
   links.whole.resize(e.size());
   std::iota(links.whole.begin(), links.whole.end(), 0u);
   links.enclosed = collector.enclosed();
@@ -129,67 +291,7 @@ LineLinks line_links(const Elements& e, const RadiositySettings& settings, Progr
       links.whole.push_back(e.element_of_cell[c]);
     }
   }
-  const std::size_t sides = 2 * links.whole.size();
-  const auto part_side = [&](std::uint32_t side) {
-    return side & enclosed_bit ? 2 * links.enclosed_part[(side & ~enclosed_bit) >> 1] + (side & 1u) : side;
-  };
-  links.open_up.assign(sides, 0.0f);
-  links.open_down.assign(sides, 0.0f);
-  links.lines.assign(sides, 0.0f);
-  std::vector<std::uint32_t> start(sides + 1, 0);
-  for (auto& f : found) {
-    links.fragments += f.pairs.size() + f.open_up.size();
-    for (auto& p : f.pairs) {
-      p = {part_side(p.low), part_side(p.high)};
-      ++start[p.low + 1];
-      ++start[p.high + 1];
-    }
-    for (const auto s : f.open_up) links.open_up[part_side(s)] += 1.0f;
-    for (const auto s : f.open_down) links.open_down[part_side(s)] += 1.0f;
-    for (const auto& o : f.outside) {
-      const std::uint32_t up = 2 * e.element_of_cell[o.cell] + (o.front_up ? 0 : 1);
-      links.open_up[up] += o.lines;
-      links.open_down[up ^ 1u] += o.lines;
-    }
-  }
-  for (std::size_t i = 0; i < sides; ++i) start[i + 1] += start[i];
-  std::vector<std::uint32_t> column(start[sides]);
-  {
-    std::vector<std::uint32_t> cursor(start.begin(), start.end() - 1);
-    for (auto& f : found) {
-      for (const auto& p : f.pairs) {
-        column[cursor[p.low]++] = p.high;
-        column[cursor[p.high]++] = p.low;
-      }
-      f = {};
-    }
-  }
-  // merge equal columns
-  std::vector<std::uint32_t> distinct(sides);
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, sides, 256), [&](const auto& range) {
-    for (std::size_t i = range.begin(); i < range.end(); ++i) {
-      const auto begin = column.begin() + start[i], end = column.begin() + start[i + 1];
-      std::sort(begin, end);
-      std::uint32_t n = 0;
-      for (auto k = begin; k != end; ++k) n += k == begin || *k != k[-1];
-      distinct[i] = n;
-      links.lines[i] = static_cast<float>(end - begin) + links.open_up[i] + links.open_down[i];
-    }
-  });
-  links.start.assign(sides + 1, 0);
-  for (std::size_t i = 0; i < sides; ++i) links.start[i + 1] = links.start[i] + distinct[i];
-  links.column.resize(links.start[sides]);
-  links.count.assign(links.start[sides], 0.0f);
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, sides, 256), [&](const auto& range) {
-    for (std::size_t i = range.begin(); i < range.end(); ++i) {
-      std::uint32_t out = links.start[i];
-      for (std::uint32_t k = start[i]; k < start[i + 1]; ++k) {
-        if (k > start[i] && column[k] != column[k - 1]) ++out;
-        links.column[out] = column[k];
-        links.count[out] += 1.0f;
-      }
-    }
-  });
+  for (std::size_t h = 0; h < 2; ++h) links.half[h] = builder[h].finish(links.sides(), links.enclosed_part);
   return links;
 }
 

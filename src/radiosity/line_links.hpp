@@ -1,38 +1,75 @@
-// Links between element sides, counted from global lines.
+// Links counted from global lines: near ones between sides of elements, far ones between clusters.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
 #include <sunfleck/core/progress.hpp>
 
+#include "cluster_tree.hpp"
 #include "elements.hpp"
 
 namespace sunfleck {
 
-/// Form factors as counts: F_ij = count_ij / lines_i (Sbert 1993; Szirmay-Kalos & Purgathofer 1998). Rows are sides, 2 * part +
-/// (0 front, 1 back); count is symmetric; lines_i = sum_j count_ij + open_up_i + open_down_i.
-///
-/// Parts are the elements, followed by the *enclosed parts* of those elements that stick in another organ, as the base of a petiole
-/// does in a stem: where a line meets an element between two hits of one other organ, the hit belongs to the enclosed part. An element
-/// that kept it would shine inside the organ that hides it; stems of a real plant then absorbed 20 % too much.
+/// Directions fall into bins, equal parts of the upper hemisphere; a channel is a bin looked at from below (2 bin: light comes from
+/// above) or from above (2 bin + 1: light comes from below).
+inline constexpr std::uint32_t direction_bins = 24;
+inline constexpr std::uint32_t channels = 2 * direction_bins;
+std::uint32_t bin_of(const Vec3& direction);
+
+/// Near links as counts: F_ij = count_ij / lines_i (Sbert 1993; Szirmay-Kalos & Purgathofer 1998). count is symmetric and
+/// lines_i = sum_j count_ij + far_i + open_up_i + open_down_i, so energy is conserved and reciprocity holds at any density.
+struct NearLinks {
+  std::vector<std::uint32_t> start;   ///< [sides + 1]
+  std::vector<std::uint32_t> column;  ///< [links] rising within a row
+  std::vector<float> count;           ///< [links]
+};
+
+/// Lines that run so far that a cluster may stand for its elements at both ends. What a side receives along channel q is the mean of
+/// what its cluster receives there, and it contributes to what its cluster sends back along q: one count serves both.
+struct FarField {
+  std::vector<std::uint8_t> of_side;      ///< [sides of elements][channels] lines; empty without far links
+  std::vector<std::uint32_t> through;     ///< [nodes][channels] lines of the node's elements that run far
+  std::vector<std::uint32_t> linked;      ///< [nodes][channels] of these, lines whose link is at this node; the others pass to the parent
+  std::vector<std::uint32_t> first_link;  ///< [nodes + 1]
+  struct Link {
+    std::uint32_t source;  ///< emitting node * channels + its channel
+    std::uint16_t count;
+    std::uint16_t channel; ///< of the receiving node
+  };
+  std::vector<Link> links;
+};
+
+/// One of two independent sets of lines. The two take turns, E_a = E0 + F_a R E_b and E_b = E0 + F_b R E_a: light that goes back and
+/// forth between two elements then meets two independent estimates, whose product is unbiased; the square of one estimate is not.
+struct HalfLinks {
+  NearLinks near;
+  FarField far;
+  std::vector<float> lines, open_up, open_down;  ///< [sides]
+};
+
+/// Rows are sides, 2 * part + (0 front, 1 back). Parts are the elements, followed by the *enclosed parts* of those elements that stick in
+/// another organ, as the base of a petiole does in a stem: hits that face the inside of a hollow organ belong to the enclosed part. An element that kept it would shine inside the organ that hides it; stems of a real plant then
+/// absorbed 20 % too much.
 struct LineLinks {
-  std::vector<std::uint32_t> start;    ///< [sides + 1]
-  std::vector<std::uint32_t> column;   ///< [links] rising within a row
-  std::vector<float> count;            ///< [links]
-  std::vector<float> lines;            ///< [sides]
-  std::vector<float> open_up;          ///< [sides] lines that leave the scene towards the sky
-  std::vector<float> open_down;        ///< [sides] lines that leave it below the horizon
-  std::vector<std::uint32_t> whole;    ///< [parts] the element that a part belongs to; part i < elements belongs to element i
+  std::array<HalfLinks, 2> half;
+  std::vector<std::uint32_t> whole;          ///< [parts] the element that a part belongs to; part i < elements belongs to element i
   std::vector<std::uint32_t> enclosed_part;  ///< [elements] its enclosed part, or none; empty where no element has one
-  std::vector<float> enclosed;         ///< [cells] fraction of a cell that is enclosed; empty where no element has an enclosed part
+  std::vector<float> enclosed;               ///< [cells] fraction of a cell that is enclosed; empty where no element has an enclosed part
   std::uint64_t fragments = 0;
   static constexpr std::uint32_t none = 0xffffffffu;
 
-  std::size_t sides() const { return lines.size(); }
+  std::size_t sides() const { return 2 * whole.size(); }
+  std::uint64_t link_count() const;
   std::size_t bytes() const;
 };
 
-LineLinks line_links(const Elements& elements, const RadiositySettings& settings, Progress& progress);
+/// Traces lines and makes links. The refinement oracle takes, for the ends of each line, the largest pair of clusters A, B with
+///     albedo x (diameter_A + diameter_B) / distance <= density.link_error,
+/// an estimate of how much the radiosity met, relative to the mean, changes when A sees B from elsewhere within A: the light of dark
+/// things is scattered little, and a look from far spreads over what lies around anyway. No such pair: a link between the elements.
+/// Method flat has no clusters.
+LineLinks line_links(const Elements& elements, const ClusterTree* tree, const RadiositySettings& settings, Progress& progress);
 
 }  // namespace sunfleck

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <optional>
 
 #include <fmt/format.h>
@@ -111,60 +110,77 @@ class RadiositySolver {
 
   void solve_scattering() {
     Stopwatch watch;
-    LineLinks links = line_links(elements_, settings_, progress_);
+    std::optional<ClusterTree> tree;
+    if (settings_.method == RadiosityMethod::clustering) tree = make_cluster_tree(facets_, elements_);
+    const LineLinks links = line_links(elements_, tree ? &*tree : nullptr, settings_, progress_);
     enclosed_part_ = links.enclosed_part;
     enclosed_ = links.enclosed;
     part_sources(links);
     timed("lines", watch);
+    const std::size_t sides = links.sides();
+    report_.counts.emplace_back("clusters", tree ? tree->size() : 0);
     report_.counts.emplace_back("directions", settings_.density.directions);
     report_.counts.emplace_back("fragments", links.fragments);
-    const std::size_t sides = links.sides();
+    report_.counts.emplace_back("links", links.link_count());
+    report_.memory.emplace_back("links", links.bytes() + (tree ? tree->bytes() : 0));
+    progress_.line(fmt::format("{} elements, {} clusters, {} links", elements_.size(), tree ? tree->size() : 0, links.link_count()));
+
+    watch = {};
     const bool sky_known = !direct_.sky_seen.empty();
     bool sky_below = false;
     for (const auto& state : scene_.states) sky_below = sky_below || (state.sky && state.sky->reaches_below_horizon());
-    std::vector<float> sky_lines(sides, 0.0f);
-    // what leaves the scene: the part of each side's radiosity that goes to the sky and below the horizon
-    escape_.assign(sides, 0.0f);
-    for (std::size_t i = 0; i < sides; ++i) {
-      if (sky_known) sky_lines[i] = links.open_up[i] + (sky_below ? links.open_down[i] : 0.0f);
-      const float all = links.lines[i], open = links.open_up[i] + links.open_down[i], left = all - sky_lines[i];
-      if (sky_known)
-        escape_[i] = 1.0f - part_rest_[i] + (left > 0.0f ? part_rest_[i] * (open - sky_lines[i]) / left : 0.0f);
-      else
-        escape_[i] = all > 0.0f ? open / all : 0.0f;
+    std::vector<Gather> gather;
+    std::vector<float> escape[2];  // the part of each side's radiosity that goes to the sky and below the horizon
+    for (std::size_t h = 0; h < 2; ++h) {
+      const auto& half = links.half[h];
+      std::vector<float> sky_lines(sides, 0.0f);
+      escape[h].assign(sides, 0.0f);
+      for (std::size_t i = 0; i < sides; ++i) {
+        if (sky_known) sky_lines[i] = half.open_up[i] + (sky_below ? half.open_down[i] : 0.0f);
+        const float left = half.lines[i] - sky_lines[i], open = half.open_up[i] + half.open_down[i] - sky_lines[i];
+        escape[h][i] = 1.0f - part_rest_[i] + (left > 0.0f ? part_rest_[i] * open / left : 0.0f);
+      }
+      gather.emplace_back(half, tree ? &*tree : nullptr, sky_lines, columns_);
     }
-    const auto whole = links.whole;
-    std::unique_ptr<Gather> gather = std::make_unique<FlatGather>(std::move(links), sky_lines);
-    report_.counts.emplace_back("links", gather->links());
-    report_.memory.emplace_back("links", gather->bytes());
-    progress_.line(fmt::format("{} elements, {} links", elements_.size(), gather->links()));
-
-    watch = {};
-    std::vector<std::uint32_t> material(whole.size());
-    for (std::size_t i = 0; i < material.size(); ++i) material[i] = elements_.material[whole[i]];
+    std::vector<std::uint32_t> material(links.whole.size());
+    for (std::size_t i = 0; i < material.size(); ++i) material[i] = elements_.material[links.whole[i]];
     const Reflection reflection(facets_, std::move(material), states_);
-    Field radiosity(sides * columns_), irradiance = source_;
+
+    // both halves stacked: E_a = E0 + F_a R E_b, E_b = E0 + F_b R E_a
+    const std::size_t values = sides * columns_;
+    Field radiosity(2 * values), irradiance(2 * values);
+    std::vector<float> weight(2 * sides);
+    for (std::size_t i = 0; i < 2 * sides; ++i) weight[i] = part_area_[(i % sides) / 2];
+    source_.insert(source_.end(), source_.begin(), source_.end());
+    irradiance = source_;
     const auto apply = [&](const Field& x, Field& kx) {
-      reflection.apply(x, radiosity);
-      gather->gather(radiosity, kx, columns_);
-      tbb::parallel_for(tbb::blocked_range<std::size_t>(0, sides, 4096), [&](const auto& range) {
+      for (std::size_t h = 0; h < 2; ++h) {
+        reflection.apply(x.data() + (1 - h) * values, radiosity.data() + (1 - h) * values);
+        gather[h].gather(radiosity.data() + (1 - h) * values, kx.data() + h * values);
+      }
+      tbb::parallel_for(tbb::blocked_range<std::size_t>(0, 2 * sides, 4096), [&](const auto& range) {
         for (std::size_t i = range.begin(); i < range.end(); ++i)
-          for (std::size_t c = 0; c < columns_; ++c) kx[i * columns_ + c] *= part_rest_[i];
+          for (std::size_t c = 0; c < columns_; ++c) kx[i * columns_ + c] *= part_rest_[i % sides];
       });
     };
-    std::vector<float> weight(sides);
-    for (std::size_t i = 0; i < sides; ++i) weight[i] = part_area_[i / 2];
     const double tolerance = settings_.tolerance > 0 ? settings_.tolerance : settings_.density.tolerance;
     const auto result = gmres(apply, source_, weight, columns_, tolerance, most_iterations, irradiance, progress_);
     for (std::size_t k = 0; k < result.residuals.size(); ++k)
-      report_.convergence.push_back({0, static_cast<std::uint32_t>(k), result.residuals[k], gather->links(), watch.seconds()});
+      report_.convergence.push_back({0, static_cast<std::uint32_t>(k), result.residuals[k], links.link_count(), watch.seconds()});
     if (!result.converged) report_.status = SolveStatus::not_converged;
-    reflection.apply(irradiance, radiosity);
-    gathered_.assign(sides * columns_, 0.0f);
-    gather->gather(radiosity, gathered_, columns_);
-    for (std::size_t i = 0; i < sides; ++i)
-      for (std::size_t c = 0; c < columns_; ++c)
-        report_.balance[c / bands_][c % bands_].escaped += static_cast<double>(part_area_[i / 2]) * radiosity[i * columns_ + c] * escape_[i];
+
+    gathered_.assign(values, 0.0f);
+    Field seen(values);
+    for (std::size_t h = 0; h < 2; ++h) {
+      float* b = radiosity.data() + (1 - h) * values;
+      reflection.apply(irradiance.data() + (1 - h) * values, b);
+      gather[h].gather(b, seen.data());
+      for (std::size_t i = 0; i < values; ++i) gathered_[i] += 0.5f * seen[i];
+      for (std::size_t i = 0; i < sides; ++i)
+        for (std::size_t c = 0; c < columns_; ++c)
+          report_.balance[c / bands_][c % bands_].escaped += 0.5 * static_cast<double>(part_area_[i / 2]) * b[i * columns_ + c] * escape[h][i];
+    }
+    report_.memory.emplace_back("fields", 14 * bytes_of(irradiance) + gather[0].bytes() + gather[1].bytes());
     timed("iteration", watch);
     progress_.line(fmt::format("{} applications of the operator, residual {:.1e}", result.residuals.size(), result.residuals.back()));
   }
@@ -257,7 +273,7 @@ class RadiositySolver {
   Elements elements_;
   DirectLight direct_;
   Field source_, gathered_;
-  std::vector<float> part_rest_, part_area_, escape_;
+  std::vector<float> part_rest_, part_area_;
   std::vector<std::uint32_t> enclosed_part_;
   std::vector<float> enclosed_;
   SolveReport report_;

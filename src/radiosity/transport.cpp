@@ -2,6 +2,8 @@
 
 #include <tbb/parallel_for.h>
 
+#include <sunfleck/core/memory.hpp>
+
 namespace sunfleck {
 
 Reflection::Reflection(const FacetScene& facets, std::vector<std::uint32_t> material_of_part, std::size_t states)
@@ -14,13 +16,13 @@ Reflection::Reflection(const FacetScene& facets, std::vector<std::uint32_t> mate
     }
 }
 
-void Reflection::apply(const Field& irradiance, Field& radiosity) const {
+void Reflection::apply(const float* irradiance, float* radiosity) const {
   const std::size_t n = columns_;
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, material_.size(), 1024), [&](const auto& range) {
     for (std::size_t i = range.begin(); i < range.end(); ++i) {
       const std::size_t m = material_[i] * n;
-      const float* e = irradiance.data() + 2 * i * n;
-      float* b = radiosity.data() + 2 * i * n;
+      const float* e = irradiance + 2 * i * n;
+      float* b = radiosity + 2 * i * n;
       for (std::size_t c = 0; c < n; ++c) {
         const float front = e[c], back = e[n + c];
         b[c] = front_[m + c] * front + through_[m + c] * back;
@@ -30,54 +32,162 @@ void Reflection::apply(const Field& irradiance, Field& radiosity) const {
   });
 }
 
-FlatGather::FlatGather(LineLinks links, const std::vector<float>& sky_lines) : links_(std::move(links)), inverse_(links_.sides()) {
+Gather::Gather(const HalfLinks& half, const ClusterTree* tree, const std::vector<float>& sky_lines, std::size_t columns)
+    : half_(half), tree_(tree), columns_(columns), inverse_(half.lines.size()), donor_(half.lines.size()) {
+  const auto known = [&](std::size_t i) { return half_.lines[i] - sky_lines[i] > 0.5f; };
   for (std::size_t i = 0; i < inverse_.size(); ++i) {
-    const float rest = links_.lines[i] - sky_lines[i];
-    inverse_[i] = rest > 1e-3f ? 1.0f / rest : 0.0f;
+    std::size_t donor = i;
+    for (std::size_t reach = 2; !known(donor) && reach <= 64; reach += 2)
+      donor = i >= reach && known(i - reach) ? i - reach : i + reach < inverse_.size() && known(i + reach) ? i + reach : donor;
+    donor_[i] = static_cast<std::uint32_t>(donor);
+    inverse_[i] = known(i) ? 1.0f / (half_.lines[i] - sky_lines[i]) : 0.0f;
   }
+  if (!tree_) return;
+  inverse_through_.resize(half_.far.through.size());
+  for (std::size_t i = 0; i < inverse_through_.size(); ++i) inverse_through_[i] = half_.far.through[i] > 0 ? 1.0f / static_cast<float>(half_.far.through[i]) : 0.0f;
+  sent_.resize(inverse_through_.size() * columns_);
+  received_.resize(sent_.size());
 }
+
+std::size_t Gather::bytes() const { return bytes_of(inverse_) + bytes_of(donor_) + bytes_of(inverse_through_) + bytes_of(sent_) + bytes_of(received_); }
 
 namespace {
 
+/// Rows [begin, end) of near links. Columns = 0: their number is only known at run time.
 template <std::size_t Columns>
-void gather_rows(const LineLinks& links, const float* inverse, const float* b, float* s, std::size_t begin, std::size_t end) {
+void near_rows(const NearLinks& near, const float* b, float* s, std::size_t begin, std::size_t end, std::size_t run_time_columns) {
+  const std::size_t n = Columns ? Columns : run_time_columns;
   for (std::size_t i = begin; i < end; ++i) {
-    float sum[Columns] = {};
-    for (std::uint32_t k = links.start[i]; k < links.start[i + 1]; ++k) {
-      const float* from = b + std::size_t{links.column[k]} * Columns;
-      for (std::size_t c = 0; c < Columns; ++c) sum[c] += links.count[k] * from[c];
+    float* to = s + i * n;
+    float sum[Columns ? Columns : 1] = {};
+    float* total = Columns ? sum : to;
+    if (!Columns)
+      for (std::size_t c = 0; c < n; ++c) total[c] = 0.0f;
+    for (std::uint32_t k = near.start[i]; k < near.start[i + 1]; ++k) {
+      const float* from = b + std::size_t{near.column[k]} * n;
+      const float count = near.count[k];
+      for (std::size_t c = 0; c < n; ++c) total[c] += count * from[c];
     }
-    for (std::size_t c = 0; c < Columns; ++c) s[i * Columns + c] = inverse[i] * sum[c];
-  }
-}
-
-void gather_rows(const LineLinks& links, const float* inverse, const float* b, float* s, std::size_t begin, std::size_t end, std::size_t columns) {
-  for (std::size_t i = begin; i < end; ++i) {
-    float* to = s + i * columns;
-    for (std::size_t c = 0; c < columns; ++c) to[c] = 0.0f;
-    for (std::uint32_t k = links.start[i]; k < links.start[i + 1]; ++k) {
-      const float* from = b + std::size_t{links.column[k]} * columns;
-      const float count = links.count[k];
-      for (std::size_t c = 0; c < columns; ++c) to[c] += count * from[c];
-    }
-    for (std::size_t c = 0; c < columns; ++c) to[c] *= inverse[i];
+    if (Columns)
+      for (std::size_t c = 0; c < n; ++c) to[c] = total[c];
   }
 }
 
 }  // namespace
 
-void FlatGather::gather(const Field& radiosity, Field& gathered, std::size_t columns) const {
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, links_.sides(), 512), [&](const auto& range) {
-    const float* b = radiosity.data();
-    float* s = gathered.data();
-    switch (columns) {
-      case 1: return gather_rows<1>(links_, inverse_.data(), b, s, range.begin(), range.end());
-      case 2: return gather_rows<2>(links_, inverse_.data(), b, s, range.begin(), range.end());
-      case 3: return gather_rows<3>(links_, inverse_.data(), b, s, range.begin(), range.end());
-      case 4: return gather_rows<4>(links_, inverse_.data(), b, s, range.begin(), range.end());
-      default: return gather_rows(links_, inverse_.data(), b, s, range.begin(), range.end(), columns);
+void Gather::gather(const float* b, float* s) const {
+  const std::size_t sides = inverse_.size(), n = columns_;
+  if (tree_) {
+    far_up(b);
+    far_across();
+    far_down();
+  }
+  const std::size_t element_sides = tree_ ? 2 * tree_->cluster_of_element.size() : 0;
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, sides, 512), [&](const auto& range) {
+    switch (n) {
+      case 1: near_rows<1>(half_.near, b, s, range.begin(), range.end(), n); break;
+      case 2: near_rows<2>(half_.near, b, s, range.begin(), range.end(), n); break;
+      case 3: near_rows<3>(half_.near, b, s, range.begin(), range.end(), n); break;
+      case 4: near_rows<4>(half_.near, b, s, range.begin(), range.end(), n); break;
+      default: near_rows<0>(half_.near, b, s, range.begin(), range.end(), n);
+    }
+    for (std::size_t i = range.begin(); i < range.end(); ++i) {
+      float* to = s + i * n;
+      if (i < element_sides) {
+        const float* field = received_.data() + std::size_t{tree_->cluster_of_element[i >> 1]} * channels * n;
+        const std::uint8_t* lines = half_.far.of_side.data() + i * channels;
+        for (std::uint32_t q = 0; q < channels; ++q) {
+          if (lines[q] == 0) continue;
+          const auto count = static_cast<float>(lines[q]);
+          for (std::size_t c = 0; c < n; ++c) to[c] += count * field[q * n + c];
+        }
+      }
+      for (std::size_t c = 0; c < n; ++c) to[c] *= inverse_[i];
     }
   });
+  for (std::size_t i = 0; i < sides; ++i)
+    if (donor_[i] != i)
+      for (std::size_t c = 0; c < n; ++c) s[i * n + c] = s[std::size_t{donor_[i]} * n + c];
+}
+
+void Gather::far_up(const float* b) const {
+  const auto& t = *tree_;
+  const auto& far = half_.far;
+  const std::size_t n = columns_, row = channels * n;
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, t.size(), 16), [&](const auto& range) {
+    for (std::size_t node = range.begin(); node < range.end(); ++node) {
+      float* sum = sent_.data() + node * row;
+      std::fill(sum, sum + row, 0.0f);
+      for (std::uint32_t k = t.first_element[node]; k < t.first_element[node + 1]; ++k)
+        for (std::size_t side = 2 * std::size_t{t.elements[k]}, end = side + 2; side < end; ++side) {
+          const std::uint8_t* lines = far.of_side.data() + side * channels;
+          for (std::uint32_t q = 0; q < channels; ++q) {
+            if (lines[q] == 0) continue;
+            const auto count = static_cast<float>(lines[q]);
+            for (std::size_t c = 0; c < n; ++c) sum[q * n + c] += count * b[side * n + c];
+          }
+        }
+    }
+  });
+  // deepest level first: sums become means, and what is not linked at a node goes on to its parent
+  for (std::size_t level = t.levels.size(); level-- > 0;) {
+    for (const auto node : t.levels[level]) {
+      float* mean = sent_.data() + node * row;
+      const auto up = t.parent[node];
+      float* parent_sum = up == ClusterTree::none ? nullptr : sent_.data() + up * row;
+      for (std::uint32_t q = 0; q < channels; ++q) {
+        const std::size_t slot = node * channels + q;
+        if (far.through[slot] == 0) continue;
+        const auto on = static_cast<float>(far.through[slot] - far.linked[slot]);
+        for (std::size_t c = 0; c < n; ++c) {
+          mean[q * n + c] *= inverse_through_[slot];
+          if (parent_sum) parent_sum[q * n + c] += on * mean[q * n + c];
+        }
+      }
+    }
+  }
+}
+
+void Gather::far_across() const {
+  const auto& far = half_.far;
+  const std::size_t n = columns_, row = channels * n;
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, tree_->size(), 16), [&](const auto& range) {
+    for (std::size_t node = range.begin(); node < range.end(); ++node) {
+      float* sum = received_.data() + node * row;
+      std::fill(sum, sum + row, 0.0f);
+      for (std::uint32_t k = far.first_link[node]; k < far.first_link[node + 1]; ++k) {
+        const auto& link = far.links[k];
+        const float* from = sent_.data() + std::size_t{link.source} * n;
+        float* to = sum + link.channel * n;
+        const auto count = static_cast<float>(link.count);
+        for (std::size_t c = 0; c < n; ++c) to[c] += count * from[c];
+      }
+    }
+  });
+}
+
+void Gather::far_down() const {
+  const auto& t = *tree_;
+  const auto& far = half_.far;
+  const std::size_t n = columns_, row = channels * n;
+  for (const auto& level : t.levels)
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, level.size(), 64), [&](const auto& range) {
+      for (std::size_t k = range.begin(); k < range.end(); ++k) {
+        const auto node = level[k];
+        float* mean = received_.data() + node * row;
+        const auto up = t.parent[node];
+        const float* parent_mean = up == ClusterTree::none ? nullptr : received_.data() + up * row;
+        for (std::uint32_t q = 0; q < channels; ++q) {
+          const std::size_t slot = node * channels + q;
+          if (far.through[slot] == 0) continue;
+          const auto on = static_cast<float>(far.through[slot] - far.linked[slot]);
+          for (std::size_t c = 0; c < n; ++c) {
+            const float above = parent_mean ? parent_mean[q * n + c] : 0.0f;
+            mean[q * n + c] = (mean[q * n + c] + on * above) * inverse_through_[slot];
+          }
+        }
+      }
+    });
 }
 
 }  // namespace sunfleck

@@ -1,4 +1,4 @@
-// The transport operator E -> g (F R E): reflect and transmit on every element, gather along links.
+// The transport of scattered light: reflect and transmit on every part, gather along links.
 #pragma once
 
 #include <cstdint>
@@ -10,25 +10,16 @@
 
 namespace sunfleck {
 
-/// Fields hold one value per side of a part (an element or the enclosed part of one) and column (a band of a state): value[side * columns + column].
+/// Fields hold one value per side of a part (an element or the enclosed part of one) and column (a band of a state):
+/// value[side * columns + column].
 using Field = std::vector<float>;
-
-/// Gathers radiosity over what is not open sky: S_i = sum_j count_ij B_j / (lines_i - sky lines_i).
-class Gather {
- public:
-  virtual ~Gather() = default;
-  /// S and B are fields of the same columns.
-  virtual void gather(const Field& radiosity, Field& gathered, std::size_t columns) const = 0;
-  virtual std::uint64_t links() const = 0;
-  virtual std::size_t bytes() const = 0;
-};
 
 /// Optics per part, in the columns' bands.
 class Reflection {
  public:
   Reflection(const FacetScene& facets, std::vector<std::uint32_t> material_of_part, std::size_t states);
   /// B_f = rho_f E_f + tau E_b, B_b = rho_b E_b + tau E_f.
-  void apply(const Field& irradiance, Field& radiosity) const;
+  void apply(const float* irradiance, float* radiosity) const;
   std::size_t columns() const { return columns_; }
 
  private:
@@ -37,18 +28,28 @@ class Reflection {
   std::vector<float> front_, back_, through_;  ///< [materials][columns]
 };
 
-/// Flat gathering: every link of the lines as it is.
-class FlatGather : public Gather {
+/// Gathers radiosity over what is not open sky, with one half of the lines: S_i = sum_j count_ij B_j / (lines_i - sky lines_i), far
+/// light by way of the clusters: up the tree (means of what elements send along each channel), across far links, down the tree.
+class Gather {
  public:
-  /// `sky_lines[i]`: lines of side i that end at a sky whose light is known from elsewhere, and are left out of the mean.
-  FlatGather(LineLinks links, const std::vector<float>& sky_lines);
-  void gather(const Field& radiosity, Field& gathered, std::size_t columns) const override;
-  std::uint64_t links() const override { return links_.column.size(); }
-  std::size_t bytes() const override { return links_.bytes(); }
+  /// `sky_lines[i]`: lines of side i that end at a sky whose light is known from elsewhere, and are left out of the mean. Sides that no
+  /// line of this half meets (but in the sky) take over the row of a neighbour.
+  Gather(const HalfLinks& half, const ClusterTree* tree, const std::vector<float>& sky_lines, std::size_t columns);
+  void gather(const float* radiosity, float* gathered) const;
+  std::size_t bytes() const;
 
  private:
-  LineLinks links_;
-  std::vector<float> inverse_;  ///< [sides] 1 / (lines - sky lines); 0 where nothing but sky is seen
+  void far_up(const float* radiosity) const;
+  void far_across() const;
+  void far_down() const;
+
+  const HalfLinks& half_;
+  const ClusterTree* tree_;
+  std::size_t columns_;
+  std::vector<float> inverse_;               ///< [sides] 1 / (lines - sky lines); 0 where nothing but sky is seen
+  std::vector<std::uint32_t> donor_;         ///< [sides] the row that serves a side
+  std::vector<float> inverse_through_;       ///< [nodes][channels]
+  mutable Field sent_, received_;            ///< [nodes][channels][columns] mean radiosity along each channel
 };
 
 }  // namespace sunfleck
