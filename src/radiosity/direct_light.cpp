@@ -36,14 +36,29 @@ void fill_unsampled(const Elements& e, const std::vector<bool>& unsampled, std::
   }
 }
 
+/// Lines conserve light: each ends at the sun or the sky once. Ratios of small counts, and cells that no line met, do not: the values of
+/// plants and of the ground are scaled so that area x value adds up to what the lines found.
+class Conservation {
+ public:
+  void add(bool ground, double found, double given) {
+    found_[ground] += found;
+    given_[ground] += given;
+  }
+  float factor(bool ground) const { return given_[ground] > 0.0 && found_[ground] > 0.0 ? static_cast<float>(found_[ground] / given_[ground]) : 1.0f; }
+
+ private:
+  double found_[2] = {0, 0}, given_[2] = {0, 0};
+};
+
 bool same_radiance(const Sky& a, const Sky& b) {
   return a.model == b.model && (a.model != SkyModel::clear || (a.sun && b.sun && *a.sun == *b.sun));
 }
 
 class DirectLightSolver {
  public:
-  DirectLightSolver(const Scene& scene, const Elements& elements, const RadiositySettings& settings, Timings& timings, Progress& progress)
-      : scene_(scene), e_(elements), s_(elements.surface), settings_(settings), timings_(timings), progress_(progress) {}
+  DirectLightSolver(const Scene& scene, const FacetScene& facets, const Elements& elements, const RadiositySettings& settings, Timings& timings,
+                    Progress& progress)
+      : scene_(scene), plant_facets_(facets.plant_facets), e_(elements), s_(elements.surface), settings_(settings), timings_(timings), progress_(progress) {}
 
   DirectLight run() {
     list_sources();
@@ -92,6 +107,8 @@ class DirectLightSolver {
     out_.sky_seen.assign(2 * cells, 0.0f);
     constexpr std::uint32_t batch = 8;
     std::vector<VisibleCounts> counts(batch), counts_below(below ? batch : 0);
+    double line_area = 0;  // mean over the directions
+    std::vector<double> line_areas(batch);
     std::vector<Vec3> direction(batch);
     for (std::uint32_t first = 0; first < density.sky_directions; first += batch) {
       progress_.check();
@@ -100,6 +117,7 @@ class DirectLightSolver {
       tbb::parallel_for(std::uint32_t{0}, n, [&](std::uint32_t i) {
         direction[i] = hemisphere_direction(first + i, density.sky_directions, mix(settings_.seed, sky_stream));
         const auto p = project_set_member(s_, direction[i], first + i, pitch, mix(settings_.seed, sky_stream, 1));
+        line_areas[i] = p.line_area;
         clear(counts[i], cells);
         count_visible(s_, p, false, counts[i]);
         if (below) {
@@ -107,6 +125,7 @@ class DirectLightSolver {
           count_visible(s_, p, true, counts_below[i]);
         }
       });
+      for (std::uint32_t i = 0; i < n; ++i) line_area += line_areas[i] / density.sky_directions;
       std::vector<float> radiance(n * skies_.size()), radiance_below(n * skies_.size());
       for (std::uint32_t i = 0; i < n; ++i)
         for (std::size_t k = 0; k < skies_.size(); ++k) {
@@ -138,15 +157,34 @@ class DirectLightSolver {
     for (std::size_t c = 0; c < cells; ++c) {
       total += all[c];
       unsampled[c] = all[c] == 0.0f;
-      const float inverse = all[c] > 0.0f ? 1.0f / all[c] : 0.0f;
-      for (int side = 0; side < 2; ++side) {
-        out_.sky_seen[2 * c + side] *= inverse;
-        for (auto& sky : out_.sky) sky[2 * c + side] *= inverse;
-      }
     }
     out_.fragments += static_cast<std::uint64_t>(total);
-    fill_unsampled(e_, unsampled, out_.sky_seen);
-    for (auto& sky : out_.sky) fill_unsampled(e_, unsampled, sky);
+    // a side of area A meets A D / (2 line area) lines
+    const double area_of_line = 2.0 * line_area / density.sky_directions;
+    normalise(out_.sky_seen, all, unsampled, area_of_line);
+    for (auto& sky : out_.sky) normalise(sky, all, unsampled, area_of_line);
+    for (auto& seen : out_.sky_seen) seen = std::min(seen, 1.0f);
+  }
+
+  /// Sums over lines become means over each cell's lines.
+  void normalise(std::vector<float>& value, const std::vector<float>& all, const std::vector<bool>& unsampled, double area_of_line) {
+    Conservation conservation;
+    for (std::size_t c = 0; c < all.size(); ++c) {
+      if (unsampled[c]) continue;
+      conservation.add(is_ground(c), (static_cast<double>(value[2 * c]) + value[2 * c + 1]) * area_of_line, 0.0);
+      for (int side = 0; side < 2; ++side) value[2 * c + side] /= all[c];
+    }
+    fill_unsampled(e_, unsampled, value);
+    for (std::size_t c = 0; c < all.size(); ++c)
+      conservation.add(is_ground(c), 0.0, cell_area(c) * (static_cast<double>(value[2 * c]) + value[2 * c + 1]));
+    for (std::size_t c = 0; c < all.size(); ++c)
+      for (int side = 0; side < 2; ++side) value[2 * c + side] *= conservation.factor(is_ground(c));
+  }
+
+  bool is_ground(std::size_t cell) const { return e_.order[e_.row_of_cell[cell]] >= plant_facets_; }
+  double cell_area(std::size_t cell) const {
+    const auto t = e_.row_of_cell[cell];
+    return s_.split[t] > 0 ? s_.cell_area[t] : 0.0;
   }
 
   void sun(const Sun& sun) {
@@ -159,26 +197,33 @@ class DirectLightSolver {
     orthonormal_frame(sun.direction, u, v);
     const auto seed = mix(settings_.seed, sun_stream);
     std::vector<VisibleCounts> counts(samples);
+    std::vector<double> line_area(samples);
     tbb::parallel_for(std::uint32_t{0}, samples, [&](std::uint32_t i) {
       // points of the disc on a sunflower spiral: equal areas
       const double r = radius * std::sqrt((i + 0.5) / samples), a = 2.399963229728653 * i + 2.0 * std::numbers::pi * unit_interval(seed);
       Vec3 d = glm::normalize(sun.direction + std::tan(r) * (std::cos(a) * u + std::sin(a) * v));
       if (d.z < 1e-3 && s_.periodic) d = glm::normalize(Vec3{d.x, d.y, 1e-3});
       clear(counts[i], cells);
-      count_visible(s_, project_set_member(s_, d, i, pitch, mix(seed, 1)), false, counts[i]);
+      const auto p = project_set_member(s_, d, i, pitch, mix(seed, 1));
+      line_area[i] = p.line_area;
+      count_visible(s_, p, false, counts[i]);
     });
     auto& lit = out_.sunlit.emplace_back(2 * cells, 0.0f);
     auto& cosine = out_.sun_cosine.emplace_back(s_.size());
     for (std::size_t t = 0; t < s_.size(); ++t)
       cosine[t] = static_cast<float>(s_.normal[0][t] * sun.direction.x + s_.normal[1][t] * sun.direction.y + s_.normal[2][t] * sun.direction.z);
     std::vector<bool> unsampled(cells);
+    Conservation conservation;
     double total = 0;
     for (std::size_t c = 0; c < cells; ++c) {
       float all = 0, visible = 0;
-      for (const auto& k : counts) {
-        all += k.all[c];
-        visible += k.visible[c];
+      double power = 0;
+      for (std::uint32_t k = 0; k < samples; ++k) {
+        all += counts[k].all[c];
+        visible += counts[k].visible[c];
+        power += counts[k].visible[c] * line_area[k] / samples;
       }
+      conservation.add(is_ground(c), power, 0.0);
       total += all;
       unsampled[c] = all == 0.0f;
       if (all > 0.0f) lit[2 * c + (cosine[e_.row_of_cell[c]] > 0.0f ? 0 : 1)] = visible / all;
@@ -193,6 +238,10 @@ class DirectLightSolver {
         lit[2 * c + 1] = front ? 0.0f : fraction;
       }
     out_.fragments += static_cast<std::uint64_t>(total);
+    const auto power = [&](std::size_t c) { return cell_area(c) * std::fabs(cosine[e_.row_of_cell[c]]) * (static_cast<double>(lit[2 * c]) + lit[2 * c + 1]); };
+    for (std::size_t c = 0; c < cells; ++c) conservation.add(is_ground(c), 0.0, power(c));
+    for (std::size_t c = 0; c < cells; ++c)
+      for (int side = 0; side < 2; ++side) lit[2 * c + side] = std::min(1.0f, lit[2 * c + side] * conservation.factor(is_ground(c)));
   }
 
   static void clear(VisibleCounts& counts, std::size_t cells) {
@@ -201,6 +250,7 @@ class DirectLightSolver {
   }
 
   const Scene& scene_;
+  const std::size_t plant_facets_;
   const Elements& e_;
   const Surface& s_;
   const RadiositySettings& settings_;
@@ -220,8 +270,9 @@ std::size_t DirectLight::bytes() const {
   return total;
 }
 
-DirectLight direct_light(const Scene& scene, const Elements& elements, const RadiositySettings& settings, Timings& timings, Progress& progress) {
-  return DirectLightSolver(scene, elements, settings, timings, progress).run();
+DirectLight direct_light(const Scene& scene, const FacetScene& facets, const Elements& elements, const RadiositySettings& settings, Timings& timings,
+                         Progress& progress) {
+  return DirectLightSolver(scene, facets, elements, settings, timings, progress).run();
 }
 
 }  // namespace sunfleck

@@ -26,6 +26,7 @@ struct DirectLight {
   std::size_t bytes() const;
 };
 
-DirectLight direct_light(const Scene& scene, const Elements& elements, const RadiositySettings& settings, Timings& timings, Progress& progress);
+DirectLight direct_light(const Scene& scene, const FacetScene& facets, const Elements& elements, const RadiositySettings& settings, Timings& timings,
+                         Progress& progress);
 
 }  // namespace sunfleck

@@ -41,6 +41,9 @@ std::vector<std::uint32_t> gather_materials(const ClusterOrder& tree, const std:
   return organs;
 }
 
+/// Cells tell sunlit from shaded parts of an element apart, where it reflects the sun's light on.
+constexpr double cells_per_element = 3.0;
+
 std::uint16_t split_for(double area, double aim) {
   return static_cast<std::uint16_t>(std::clamp(std::lround(std::sqrt(area / aim)), 1L, 32L));
 }
@@ -99,7 +102,7 @@ Elements make_elements(const Scene& scene, const FacetScene& facets, const Radio
       const auto f = members[k];
       const bool cut = !flat && facets.area[f] > 0 &&
                        (f < facets.plant_facets || !ground_is_flat || facets.plant_facets == 0 || near_plants(facets.corners[f], plants));
-      split.push_back(cut ? split_for(facets.area[f], e.element_area) : std::uint16_t{1});
+      split.push_back(cut ? split_for(facets.area[f], e.element_area / cells_per_element) : std::uint16_t{1});
       e.order.push_back(f);
     }
   e.surface = make_surface(facets, e.order, split, ground_is_flat);
@@ -136,14 +139,14 @@ Elements make_elements(const Scene& scene, const FacetScene& facets, const Radio
     for (std::uint32_t k = start[organ]; k < start[organ + 1]; ++k, ++row)
       for (std::uint32_t c = s.first_cell[row]; c < s.first_cell[row + 1]; ++c) {
         const auto material = facets.optics[e.order[row]];
-        if (!current.open || s.split[row] > 1 || e.material[current.index] != material) {
+        if (!current.open || e.material[current.index] != material) {
           current = {true, static_cast<std::uint32_t>(e.size())};
           e.area.push_back(0.0f);
           e.material.push_back(material);
         }
         e.element_of_cell[c] = current.index;
         e.area[current.index] += s.split[row] > 0 ? s.cell_area[row] : 0.0f;
-        if (flat || s.split[row] > 1 || (!is_small && e.area[current.index] >= 0.999 * part_area)) current.open = false;
+        if (flat || (!is_small && e.area[current.index] >= 0.999 * part_area)) current.open = false;
       }
     current.open = is_small && current.open && e.area[current.index] < part_area;
   }

@@ -49,11 +49,12 @@ std::vector<bool> interior_sides(const Elements& e, double pitch, std::uint64_t 
   return interior;
 }
 
-LineCollector::LineCollector(const Elements& elements, const ClusterTree* tree, double link_error, std::vector<bool> interior)
+LineCollector::LineCollector(const Elements& elements, const ClusterTree* tree, double link_error, std::vector<bool> interior, bool sun)
     : e_(elements),
       tree_(tree),
       link_error_(static_cast<float>(link_error)),
       interior_(std::move(interior)),
+      sun_(sun),
       met_(interior_.empty() ? 0 : elements.surface.cells()),
       inside_(met_.size()) {}
 
@@ -78,6 +79,15 @@ void LineCollector::collect(const LineBundle& bundle, DirectionLines& out) {
         out.near.push_back({side[k - 1], side[k] ^ 1u});
     }
     out.open_up.push_back(side[n - 1]);
+    if (!sun_) continue;
+    // the sun does not shine on enclosed parts
+    for (std::uint32_t k = 1; k < n; ++k) {
+      const std::uint32_t low = side[k - 1], high = side[k] ^ 1u;
+      if (!(high & enclosed_bit)) out.reflections.push_back({low, bundle.side[begin + k] ^ 1u});
+      if (!(low & enclosed_bit)) out.reflections.push_back({high, bundle.side[begin + k - 1]});
+    }
+    if (!(side[0] & enclosed_bit)) out.reflections.push_back({no_row, bundle.side[begin] ^ 1u});
+    if (!(side[n - 1] & enclosed_bit)) out.reflections.push_back({no_row, bundle.side[begin + n - 1]});
   }
 }
 

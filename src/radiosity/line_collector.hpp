@@ -13,6 +13,8 @@ namespace sunfleck {
 
 inline constexpr std::uint32_t enclosed_bit = 0x80000000u;  ///< on a side: it is the enclosed part's
 
+inline constexpr std::uint32_t no_row = 0xffffffffu;
+
 /// A line between two sides: the lower fragment's upward side and the upper fragment's downward side.
 struct SidePair {
   std::uint32_t low, high;
@@ -24,9 +26,17 @@ struct FarPair {
   std::uint32_t low_node, high_node;  ///< clusters that the oracle chose
 };
 
+/// Who meets the first reflection of the sun's light along a line: a row (a side of an element, or of its enclosed part) and the side of
+/// the cell that reflects; `no_row` where the reflected light leaves the scene.
+struct FirstReflection {
+  std::uint32_t row;
+  std::uint32_t cell_side;
+};
+
 struct DirectionLines {
   std::vector<SidePair> near;
   std::vector<FarPair> far;
+  std::vector<FirstReflection> reflections;  ///< empty without sun
   std::vector<std::uint32_t> open_up, open_down;  ///< sides, once per line
   std::vector<OutsideArea> outside;
 };
@@ -38,7 +48,7 @@ std::vector<bool> interior_sides(const Elements& elements, double pitch, std::ui
 class LineCollector {
  public:
   /// `interior` from interior_sides(), or empty: nothing is enclosed.
-  LineCollector(const Elements& elements, const ClusterTree* tree, double link_error, std::vector<bool> interior);
+  LineCollector(const Elements& elements, const ClusterTree* tree, double link_error, std::vector<bool> interior, bool sun);
   void collect(const LineBundle& bundle, DirectionLines& out);
   /// Fraction of each cell that is enclosed; empty if none is.
   std::vector<float> enclosed() const;
@@ -52,6 +62,7 @@ class LineCollector {
   const ClusterTree* tree_;
   const float link_error_;
   const std::vector<bool> interior_;
+  const bool sun_;
   std::vector<std::atomic<std::uint32_t>> met_, inside_;  ///< [cells] lines; sums of integers do not depend on the order of work
 };
 

@@ -23,10 +23,14 @@ constexpr std::uint64_t line_stream = 0x9fb21c651e98df25ULL;
 /// Collects one half of the links while directions come in, bin by bin.
 class HalfBuilder {
  public:
-  HalfBuilder(const Elements& elements, const ClusterTree* tree) : e_(elements), tree_(tree) {
+  HalfBuilder(const Elements& elements, const ClusterTree* tree, const SunReflection& sun) : e_(elements), tree_(tree), sun_(sun) {
     const std::size_t sides = 2 * e_.size();
     open_up_.assign(sides, 0.0f);
     open_down_.assign(sides, 0.0f);
+    if (!sun_.exitance.empty()) {
+      reflection_.assign(sides * sun_.columns, 0.0f);
+      escaped_.assign(sun_.columns, 0.0);
+    }
     if (tree_) {
       far_.of_side.assign(sides * channels, 0);
       far_.through.assign(tree_->size() * channels, 0);
@@ -45,7 +49,20 @@ class HalfBuilder {
         const std::uint32_t up = 2 * e_.element_of_cell[o.cell] + (o.front_up ? 0 : 1);
         open_up_[up] += o.lines;
         open_down_[up ^ 1u] += o.lines;
+        if (!sun_.exitance.empty())
+          for (std::size_t cell_side = 2 * std::size_t{o.cell}, end = cell_side + 2; cell_side < end; ++cell_side)
+            for (std::size_t c = 0; c < sun_.columns; ++c) escaped_[c] += o.lines * sun_.exitance[cell_side * sun_.columns + c];
       }
+      for (const auto& r : d->reflections) {
+        const float* from = sun_.exitance.data() + std::size_t{r.cell_side} * sun_.columns;
+        if (r.row == no_row)
+          for (std::size_t c = 0; c < sun_.columns; ++c) escaped_[c] += from[c];
+        else if (r.row & enclosed_bit)
+          enclosed_reflections_.push_back(r);
+        else
+          for (std::size_t c = 0; c < sun_.columns; ++c) reflection_[r.row * sun_.columns + c] += from[c];
+      }
+      d->reflections = {};
       for (const auto& p : d->far) {
         auto& low = far_.of_side[std::size_t{p.low} * channels + 2 * bin];
         auto& high = far_.of_side[std::size_t{p.high} * channels + 2 * bin + 1];
@@ -75,6 +92,12 @@ class HalfBuilder {
     half.open_down.resize(sides, 0.0f);
     for (const auto s : enclosed_up_) half.open_up[part_side(s)] += 1.0f;
     for (const auto s : enclosed_down_) half.open_down[part_side(s)] += 1.0f;
+    half.first_reflection = std::move(reflection_);
+    half.escaped_reflection = std::move(escaped_);
+    if (!half.first_reflection.empty()) half.first_reflection.resize(sides * sun_.columns, 0.0f);
+    for (const auto& r : enclosed_reflections_)
+      for (std::size_t c = 0; c < sun_.columns; ++c)
+        half.first_reflection[part_side(r.row) * sun_.columns + c] += sun_.exitance[std::size_t{r.cell_side} * sun_.columns + c];
     half.lines.assign(sides, 0.0f);
     near_rows(sides, part_side, half);
     if (tree_) far_rows(half);
@@ -192,6 +215,10 @@ class HalfBuilder {
 
   const Elements& e_;
   const ClusterTree* tree_;
+  const SunReflection& sun_;
+  std::vector<float> reflection_;
+  std::vector<double> escaped_;
+  std::vector<FirstReflection> enclosed_reflections_;
   std::vector<float> open_up_, open_down_;
   std::vector<std::uint32_t> enclosed_up_, enclosed_down_;
   std::vector<std::vector<SidePair>> near_;
@@ -202,7 +229,7 @@ class HalfBuilder {
 
 std::size_t bytes_of_half(const HalfLinks& h) {
   return bytes_of(h.near.start) + bytes_of(h.near.column) + bytes_of(h.near.count) + bytes_of(h.far.of_side) + bytes_of(h.far.through) + bytes_of(h.far.linked) +
-         bytes_of(h.far.first_link) + bytes_of(h.far.links) + bytes_of(h.lines) + bytes_of(h.open_up) + bytes_of(h.open_down);
+         bytes_of(h.far.first_link) + bytes_of(h.far.links) + bytes_of(h.lines) + bytes_of(h.open_up) + bytes_of(h.open_down) + bytes_of(h.first_reflection);
 }
 
 }  // namespace
@@ -227,14 +254,14 @@ std::size_t LineLinks::bytes() const {
   return bytes_of_half(half[0]) + bytes_of_half(half[1]) + bytes_of(whole) + bytes_of(enclosed_part) + bytes_of(enclosed);
 }
 
-LineLinks line_links(const Elements& e, const ClusterTree* tree, const RadiositySettings& settings, Progress& progress) {
+LineLinks line_links(const Elements& e, const ClusterTree* tree, const SunReflection& sun, const RadiositySettings& settings, Progress& progress) {
   const std::uint32_t directions = settings.density.directions;
   const double pitch = std::sqrt(0.5 * e.element_area / settings.density.lines_per_element);
   LineLinks links;
   std::vector<bool> interior;
   if (settings.method != RadiosityMethod::flat) interior = interior_sides(e, pitch, settings.seed, progress);
-  LineCollector collector(e, tree, settings.density.link_error, std::move(interior));
-  HalfBuilder builder[2] = {{e, tree}, {e, tree}};
+  LineCollector collector(e, tree, settings.density.link_error, std::move(interior), !sun.exitance.empty());
+  HalfBuilder builder[2] = {{e, tree, sun}, {e, tree, sun}};
   // bin by bin, so that equal far links meet and are merged early
   std::vector<Vec3> direction(directions);
   std::vector<std::vector<std::uint32_t>> bins(direction_bins);
@@ -252,16 +279,20 @@ LineLinks line_links(const Elements& e, const ClusterTree* tree, const Radiosity
       ++last;
     }
     std::vector<DirectionLines> found(batch.size());
+    std::vector<double> line_area(batch.size());
     tbb::parallel_for(std::size_t{0}, batch.size(), [&](std::size_t i) {
       if (progress.cancelled()) return;
       thread_local LineBundle bundle;
       const auto d = batch[i];
       const auto p = project_set_member(e.surface, direction[d], d, pitch, mix(settings.seed, line_stream, 1));
+      line_area[i] = p.line_area;
       trace_lines(e.surface, p, bundle);
       collector.collect(bundle, found[i]);
       found[i].outside = outside_focus(e.surface, p);
     });
     progress.check();
+    // a side of area A meets A D / (2 line area) lines
+    for (const double a : line_area) links.area_of_line += 2.0 * a / (static_cast<double>(directions) * directions);
     for (const auto& f : found) links.fragments += f.near.size() + f.far.size() + f.open_up.size();
     const auto add = [&](std::uint32_t h) {
       std::size_t i = 0;

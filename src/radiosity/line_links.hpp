@@ -47,6 +47,16 @@ struct HalfLinks {
   NearLinks near;
   FarField far;
   std::vector<float> lines, open_up, open_down;  ///< [sides]
+  /// The sun's light after its first reflection, summed over the lines of each side: [sides][columns] [W m^-2 lines]. Taken cell by
+  /// cell, where the elements only know a mean: sunlit parts shine more than shaded ones, and are seen more from outside.
+  std::vector<float> first_reflection;
+  std::vector<double> escaped_reflection;        ///< [columns] the same, summed over the lines on which it leaves the scene
+};
+
+/// Sunlight as it leaves each side of each cell [W m^-2].
+struct SunReflection {
+  std::vector<float> exitance;  ///< [2 * cells][columns]; empty without sun
+  std::size_t columns = 0;
 };
 
 /// Rows are sides, 2 * part + (0 front, 1 back). Parts are the elements, followed by the *enclosed parts* of those elements that stick in
@@ -58,6 +68,7 @@ struct LineLinks {
   std::vector<std::uint32_t> enclosed_part;  ///< [elements] its enclosed part, or none; empty where no element has one
   std::vector<float> enclosed;               ///< [cells] fraction of a cell that is enclosed; empty where no element has an enclosed part
   std::uint64_t fragments = 0;
+  double area_of_line = 0;                   ///< one-sided area that a line of both halves together stands for: sum of lines x this = area [m^2]
   static constexpr std::uint32_t none = 0xffffffffu;
 
   std::size_t sides() const { return 2 * whole.size(); }
@@ -70,6 +81,6 @@ struct LineLinks {
 /// an estimate of how much the radiosity met, relative to the mean, changes when A sees B from elsewhere within A: the light of dark
 /// things is scattered little, and a look from far spreads over what lies around anyway. No such pair: a link between the elements.
 /// Method flat has no clusters.
-LineLinks line_links(const Elements& elements, const ClusterTree* tree, const RadiositySettings& settings, Progress& progress);
+LineLinks line_links(const Elements& elements, const ClusterTree* tree, const SunReflection& sun, const RadiositySettings& settings, Progress& progress);
 
 }  // namespace sunfleck

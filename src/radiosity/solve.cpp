@@ -35,7 +35,7 @@ class RadiositySolver {
     report_.counts.emplace_back("elements", elements_.size());
     report_.counts.emplace_back("cells", elements_.surface.cells());
     report_.memory.emplace_back("elements", elements_.bytes());
-    direct_ = direct_light(scene_, elements_, settings_, report_.timings, progress_);
+    direct_ = direct_light(scene_, facets_, elements_, settings_, report_.timings, progress_);
     report_.counts.emplace_back("direct_fragments", direct_.fragments);
     report_.memory.emplace_back("direct", direct_.bytes());
     report_.balance.assign(states_, std::vector<Balance>(bands_));
@@ -52,16 +52,16 @@ class RadiositySolver {
  private:
   void timed(const char* phase, const Stopwatch& watch) { add_seconds(report_.timings, phase, watch.seconds()); }
 
-  /// Irradiance of sun and sky on a side of a cell of row t, for column (state, band) [W m^-2].
-  float direct_irradiance(std::size_t t, std::size_t cell_side, std::size_t state, std::size_t band) const {
-    float e = 0.0f;
-    if (const auto k = direct_.sky_of_state[state]; k != DirectLight::none)
-      e += static_cast<float>(scene_.states[state].sky->irradiance[band]) * direct_.sky[k][cell_side];
-    if (const auto k = direct_.sun_of_state[state]; k != DirectLight::none) {
-      const float cosine = cell_side & 1 ? -direct_.sun_cosine[k][t] : direct_.sun_cosine[k][t];
-      e += static_cast<float>(scene_.states[state].sun->irradiance[band]) * std::max(0.0f, cosine) * direct_.sunlit[k][cell_side];
-    }
-    return e;
+  /// Irradiance of the sky, and of the sun, on a side of a cell of row t, for a state and band [W m^-2].
+  float sky_irradiance(std::size_t cell_side, std::size_t state, std::size_t band) const {
+    const auto k = direct_.sky_of_state[state];
+    return k == DirectLight::none ? 0.0f : static_cast<float>(scene_.states[state].sky->irradiance[band]) * direct_.sky[k][cell_side];
+  }
+  float sun_irradiance(std::size_t t, std::size_t cell_side, std::size_t state, std::size_t band) const {
+    const auto k = direct_.sun_of_state[state];
+    if (k == DirectLight::none) return 0.0f;
+    const float cosine = cell_side & 1 ? -direct_.sun_cosine[k][t] : direct_.sun_cosine[k][t];
+    return static_cast<float>(scene_.states[state].sun->irradiance[band]) * std::max(0.0f, cosine) * direct_.sunlit[k][cell_side];
   }
 
   /// Fraction of a side's hemisphere that is not open sky.
@@ -69,7 +69,7 @@ class RadiositySolver {
 
   float enclosed(std::size_t cell) const { return enclosed_.empty() ? 0.0f : enclosed_[cell]; }
 
-  /// Per part: its area, and area means over its cells of the direct irradiance and of the fraction of the hemisphere that is not open
+  /// Per part: its area, and area means over its cells of the sky's irradiance and of the fraction of the hemisphere that is not open
   /// sky. No direct light reaches enclosed parts.
   void part_sources(const LineLinks& links) {
     const std::size_t sides = links.sides();
@@ -92,7 +92,7 @@ class RadiositySolver {
           for (std::size_t side = 0; side < 2; ++side) {
             rest_of[side] += a * std::max(0.0f, rest(2 * c + side) - enclosed(c));
             for (std::size_t column = 0; column < columns_; ++column)
-              sum[side * columns_ + column] += a * direct_irradiance(t, 2 * c + side, column / bands_, column % bands_);
+              sum[side * columns_ + column] += a * sky_irradiance(2 * c + side, column / bands_, column % bands_);
           }
         }
         const double open = area - hidden;
@@ -108,11 +108,33 @@ class RadiositySolver {
     });
   }
 
+  /// Sunlight after reflection and transmission on each cell.
+  SunReflection sun_reflection() const {
+    SunReflection out;
+    if (direct_.sunlit.empty()) return out;
+    const auto& s = elements_.surface;
+    out.columns = columns_;
+    out.exitance.assign(2 * s.cells() * columns_, 0.0f);
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, s.cells(), 1024), [&](const auto& range) {
+      for (std::size_t c = range.begin(); c < range.end(); ++c) {
+        const auto t = elements_.row_of_cell[c];
+        const auto& m = facets_.materials[facets_.optics[elements_.order[t]]];
+        for (std::size_t column = 0; column < columns_; ++column) {
+          const std::size_t state = column / bands_, band = column % bands_;
+          const float front = sun_irradiance(t, 2 * c, state, band), back = sun_irradiance(t, 2 * c + 1, state, band);
+          out.exitance[2 * c * columns_ + column] = m.reflectance_front[band] * front + m.transmittance[band] * back;
+          out.exitance[(2 * c + 1) * columns_ + column] = m.reflectance_back[band] * back + m.transmittance[band] * front;
+        }
+      }
+    });
+    return out;
+  }
+
   void solve_scattering() {
     Stopwatch watch;
     std::optional<ClusterTree> tree;
     if (settings_.method == RadiosityMethod::clustering) tree = make_cluster_tree(facets_, elements_);
-    const LineLinks links = line_links(elements_, tree ? &*tree : nullptr, settings_, progress_);
+    const LineLinks links = line_links(elements_, tree ? &*tree : nullptr, sun_reflection(), settings_, progress_);
     enclosed_part_ = links.enclosed_part;
     enclosed_ = links.enclosed;
     part_sources(links);
@@ -146,12 +168,18 @@ class RadiositySolver {
     for (std::size_t i = 0; i < material.size(); ++i) material[i] = elements_.material[links.whole[i]];
     const Reflection reflection(facets_, std::move(material), states_);
 
-    // both halves stacked: E_a = E0 + F_a R E_b, E_b = E0 + F_b R E_a
+    // both halves stacked: E_a = E0_a + F_a R E_b, E_b = E0_b + F_b R E_a for the light of the sky and what has been scattered, where E0
+    // holds the sky and the sun's first reflection
     const std::size_t values = sides * columns_;
     Field radiosity(2 * values), irradiance(2 * values);
     std::vector<float> weight(2 * sides);
     for (std::size_t i = 0; i < 2 * sides; ++i) weight[i] = part_area_[(i % sides) / 2];
     source_.insert(source_.end(), source_.begin(), source_.end());
+    for (std::size_t h = 0; h < 2; ++h) {
+      std::fill(irradiance.begin(), irradiance.end(), 0.0f);
+      gather[h].add_first_reflection(1.0f, irradiance.data());
+      for (std::size_t i = 0; i < values; ++i) source_[h * values + i] += part_rest_[i / columns_] * irradiance[i];
+    }
     irradiance = source_;
     const auto apply = [&](const Field& x, Field& kx) {
       for (std::size_t h = 0; h < 2; ++h) {
@@ -176,10 +204,14 @@ class RadiositySolver {
       reflection.apply(irradiance.data() + (1 - h) * values, b);
       gather[h].gather(b, seen.data());
       for (std::size_t i = 0; i < values; ++i) gathered_[i] += 0.5f * seen[i];
+      gather[h].add_first_reflection(0.5f, gathered_.data());
       for (std::size_t i = 0; i < sides; ++i)
         for (std::size_t c = 0; c < columns_; ++c)
           report_.balance[c / bands_][c % bands_].escaped += 0.5 * static_cast<double>(part_area_[i / 2]) * b[i * columns_ + c] * escape[h][i];
     }
+    for (std::size_t h = 0; h < 2; ++h)
+      for (std::size_t c = 0; c < links.half[h].escaped_reflection.size(); ++c)
+        report_.balance[c / bands_][c % bands_].escaped += links.half[h].escaped_reflection[c] * links.area_of_line;
     report_.memory.emplace_back("fields", 14 * bytes_of(irradiance) + gather[0].bytes() + gather[1].bytes());
     timed("iteration", watch);
     progress_.line(fmt::format("{} applications of the operator, residual {:.1e}", result.residuals.size(), result.residuals.back()));
@@ -245,7 +277,7 @@ class RadiositySolver {
         for (std::size_t side = 0; side < 2; ++side) {
           float direct = 0.0f, scattered = 0.0f;
           for (std::uint32_t c = begin; c < end; ++c) {
-            direct += share * direct_irradiance(t, 2 * c + side, state, band);
+            direct += share * (sky_irradiance(2 * c + side, state, band) + sun_irradiance(t, 2 * c + side, state, band));
             scattered += share * scattered_irradiance(c, side, column);
           }
           const float e = direct + scattered;

@@ -110,6 +110,15 @@ void Gather::gather(const float* b, float* s) const {
       for (std::size_t c = 0; c < n; ++c) s[i * n + c] = s[std::size_t{donor_[i]} * n + c];
 }
 
+void Gather::add_first_reflection(float factor, float* s) const {
+  const auto& reflection = half_.first_reflection;
+  if (reflection.empty()) return;
+  for (std::size_t i = 0; i < inverse_.size(); ++i) {
+    const std::size_t row = donor_[i];
+    for (std::size_t c = 0; c < columns_; ++c) s[i * columns_ + c] += factor * inverse_[row] * reflection[row * columns_ + c];
+  }
+}
+
 void Gather::far_up(const float* b) const {
   const auto& t = *tree_;
   const auto& far = half_.far;

@@ -36,6 +36,8 @@ class Gather {
   /// line of this half meets (but in the sky) take over the row of a neighbour.
   Gather(const HalfLinks& half, const ClusterTree* tree, const std::vector<float>& sky_lines, std::size_t columns);
   void gather(const float* radiosity, float* gathered) const;
+  /// Adds factor x the sun's light after its first reflection, gathered along the same lines.
+  void add_first_reflection(float factor, float* gathered) const;
   std::size_t bytes() const;
 
  private:
