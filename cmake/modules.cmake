@@ -2,7 +2,8 @@
 
 # -Wno-restrict: g++ 12 sees overlaps in "text" + std::string that are not there (GCC bug 105651).
 function(sunfleck_options target)
-  target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wno-restrict -Werror)
+  target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wno-restrict -Werror
+                         -fno-math-errno -fno-trapping-math)  # lets loops with rounding be vectorised; changes no result
   if(SUNFLECK_ISA)
     target_compile_options(${target} PRIVATE -march=${SUNFLECK_ISA})
   endif()

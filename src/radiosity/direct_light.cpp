@@ -163,7 +163,11 @@ class DirectLightSolver {
     const double area_of_line = 2.0 * line_area / density.sky_directions;
     normalise(out_.sky_seen, all, unsampled, area_of_line);
     for (auto& sky : out_.sky) normalise(sky, all, unsampled, area_of_line);
-    for (auto& seen : out_.sky_seen) seen = std::min(seen, 1.0f);
+    for (std::size_t i = 0; i < out_.sky_seen.size(); ++i)
+      if (const float seen = out_.sky_seen[i]; seen > 1.0f) {
+        out_.sky_seen[i] = 1.0f;
+        for (auto& sky : out_.sky) sky[i] /= seen;
+      }
   }
 
   /// Sums over lines become means over each cell's lines.

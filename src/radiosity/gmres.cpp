@@ -10,7 +10,8 @@ namespace sunfleck {
 namespace {
 
 constexpr std::size_t block_sides = 4096;
-constexpr int restart = 12;
+constexpr std::size_t basis_bytes = std::size_t{384} << 20;  ///< a cycle grows until its basis fills this
+constexpr int shortest_cycle = 8, longest_cycle = 40;
 
 /// Weighted dot products of two fields, one per column. Blocks are summed in order.
 std::vector<double> dot(const Field& a, const Field& b, const std::vector<float>& weight, std::size_t columns) {
@@ -60,6 +61,7 @@ GmresResult gmres(const std::function<void(const Field& x, Field& kx)>& apply, c
   };
   Field r(b.size()), kx(b.size());
   double last_true = 0;
+  const int longest = std::clamp(static_cast<int>(basis_bytes / (b.size() * sizeof(float) + 1)), shortest_cycle, longest_cycle);
   for (int iteration = 0;;) {
     progress.check();
     apply(x, kx);
@@ -71,7 +73,7 @@ GmresResult gmres(const std::function<void(const Field& x, Field& kx)>& apply, c
     result.residuals.push_back(residual);
     if (residual <= tolerance) return result;
     // single precision cannot go below its own rounding: stop when a whole cycle gains nothing
-    if (iteration >= most_iterations || (last_true > 0 && residual > 0.7 * last_true)) {
+    if (iteration >= most_iterations || (last_true > 0 && residual > 0.9 * last_true)) {
       result.converged = false;
       return result;
     }
@@ -79,7 +81,7 @@ GmresResult gmres(const std::function<void(const Field& x, Field& kx)>& apply, c
     // a column that is there stands still, so that it does not depend on the company it is solved in
     for (std::size_t c = 0; c < columns; ++c)
       if (beta[c] <= tolerance * b_norm[c]) beta[c] = 0.0;
-    const int cycle = std::min(restart, most_iterations - iteration);
+    const int cycle = std::min(longest, most_iterations - iteration);
     std::vector<Field> v(1, r);
     std::vector<double> inverse(columns);
     for (std::size_t c = 0; c < columns; ++c) inverse[c] = beta[c] > 0 ? 1.0 / beta[c] : 0.0;

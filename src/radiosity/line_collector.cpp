@@ -80,14 +80,20 @@ void LineCollector::collect(const LineBundle& bundle, DirectionLines& out) {
     }
     out.open_up.push_back(side[n - 1]);
     if (!sun_) continue;
-    // the sun does not shine on enclosed parts
+    // the sun does not shine on enclosed parts: what they would reflect is withheld, and left to the rest of the element
+    const auto reflect = [&](std::uint32_t row, std::uint32_t from, std::uint32_t cell_side) {
+      if (from & enclosed_bit)
+        out.withheld.push_back(cell_side);
+      else
+        out.reflections.push_back({row, cell_side});
+    };
     for (std::uint32_t k = 1; k < n; ++k) {
       const std::uint32_t low = side[k - 1], high = side[k] ^ 1u;
-      if (!(high & enclosed_bit)) out.reflections.push_back({low, bundle.side[begin + k] ^ 1u});
-      if (!(low & enclosed_bit)) out.reflections.push_back({high, bundle.side[begin + k - 1]});
+      reflect(low, high, bundle.side[begin + k] ^ 1u);
+      reflect(high, low, bundle.side[begin + k - 1]);
     }
-    if (!(side[0] & enclosed_bit)) out.reflections.push_back({no_row, bundle.side[begin] ^ 1u});
-    if (!(side[n - 1] & enclosed_bit)) out.reflections.push_back({no_row, bundle.side[begin + n - 1]});
+    reflect(no_row, side[0] ^ 1u, bundle.side[begin] ^ 1u);
+    reflect(no_row, side[n - 1], bundle.side[begin + n - 1]);
   }
 }
 

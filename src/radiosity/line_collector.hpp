@@ -37,6 +37,7 @@ struct DirectionLines {
   std::vector<SidePair> near;
   std::vector<FarPair> far;
   std::vector<FirstReflection> reflections;  ///< empty without sun
+  std::vector<std::uint32_t> withheld;       ///< sides of cells, once per line on which they are enclosed; empty without sun
   std::vector<std::uint32_t> open_up, open_down;  ///< sides, once per line
   std::vector<OutsideArea> outside;
 };

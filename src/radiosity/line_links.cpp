@@ -63,6 +63,11 @@ class HalfBuilder {
           for (std::size_t c = 0; c < sun_.columns; ++c) reflection_[r.row * sun_.columns + c] += from[c];
       }
       d->reflections = {};
+      if (!d->withheld.empty() && withheld_.empty()) withheld_.assign(reflection_.size(), 0.0f);
+      for (const auto cell_side : d->withheld) {
+        const std::size_t row = 2 * std::size_t{e_.element_of_cell[cell_side >> 1]} + (cell_side & 1u);
+        for (std::size_t c = 0; c < sun_.columns; ++c) withheld_[row * sun_.columns + c] += sun_.exitance[std::size_t{cell_side} * sun_.columns + c];
+      }
       for (const auto& p : d->far) {
         auto& low = far_.of_side[std::size_t{p.low} * channels + 2 * bin];
         auto& high = far_.of_side[std::size_t{p.high} * channels + 2 * bin + 1];
@@ -94,6 +99,7 @@ class HalfBuilder {
     for (const auto s : enclosed_down_) half.open_down[part_side(s)] += 1.0f;
     half.first_reflection = std::move(reflection_);
     half.escaped_reflection = std::move(escaped_);
+    half.withheld_reflection = std::move(withheld_);
     if (!half.first_reflection.empty()) half.first_reflection.resize(sides * sun_.columns, 0.0f);
     for (const auto& r : enclosed_reflections_)
       for (std::size_t c = 0; c < sun_.columns; ++c)
@@ -216,7 +222,7 @@ class HalfBuilder {
   const Elements& e_;
   const ClusterTree* tree_;
   const SunReflection& sun_;
-  std::vector<float> reflection_;
+  std::vector<float> reflection_, withheld_;
   std::vector<double> escaped_;
   std::vector<FirstReflection> enclosed_reflections_;
   std::vector<float> open_up_, open_down_;

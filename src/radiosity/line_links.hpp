@@ -50,6 +50,7 @@ struct HalfLinks {
   /// The sun's light after its first reflection, summed over the lines of each side: [sides][columns] [W m^-2 lines]. Taken cell by
   /// cell, where the elements only know a mean: sunlit parts shine more than shaded ones, and are seen more from outside.
   std::vector<float> first_reflection;
+  std::vector<float> withheld_reflection;        ///< [sides of elements][columns] the same, summed over lines that find a side enclosed; empty if none
   std::vector<double> escaped_reflection;        ///< [columns] the same, summed over the lines on which it leaves the scene
 };
 

@@ -130,6 +130,18 @@ class RadiositySolver {
     return out;
   }
 
+  /// What enclosed parts withhold of the sun's first reflection, spread over the rest of their elements as exitance; empty if nothing.
+  Field returned_reflection(const LineLinks& links) const {
+    const auto &a = links.half[0].withheld_reflection, &b = links.half[1].withheld_reflection;
+    if (a.empty() && b.empty()) return {};
+    Field exitance(links.sides() * columns_, 0.0f);
+    for (std::size_t i = 0; i < std::max(a.size(), b.size()); ++i) {
+      const float lines = links.half[0].lines[i / columns_] + links.half[1].lines[i / columns_];
+      if (lines > 0.0f) exitance[i] = ((a.empty() ? 0.0f : a[i]) + (b.empty() ? 0.0f : b[i])) / lines;
+    }
+    return exitance;
+  }
+
   void solve_scattering() {
     Stopwatch watch;
     std::optional<ClusterTree> tree;
@@ -175,8 +187,12 @@ class RadiositySolver {
     std::vector<float> weight(2 * sides);
     for (std::size_t i = 0; i < 2 * sides; ++i) weight[i] = part_area_[(i % sides) / 2];
     source_.insert(source_.end(), source_.begin(), source_.end());
+    const Field returned = returned_reflection(links);
     for (std::size_t h = 0; h < 2; ++h) {
-      std::fill(irradiance.begin(), irradiance.end(), 0.0f);
+      if (returned.empty())
+        std::fill(irradiance.begin(), irradiance.end(), 0.0f);
+      else
+        gather[h].gather(returned.data(), irradiance.data());
       gather[h].add_first_reflection(1.0f, irradiance.data());
       for (std::size_t i = 0; i < values; ++i) source_[h * values + i] += part_rest_[i / columns_] * irradiance[i];
     }
@@ -202,6 +218,7 @@ class RadiositySolver {
     for (std::size_t h = 0; h < 2; ++h) {
       float* b = radiosity.data() + (1 - h) * values;
       reflection.apply(irradiance.data() + (1 - h) * values, b);
+      for (std::size_t i = 0; i < returned.size(); ++i) b[i] += returned[i];
       gather[h].gather(b, seen.data());
       for (std::size_t i = 0; i < values; ++i) gathered_[i] += 0.5f * seen[i];
       gather[h].add_first_reflection(0.5f, gathered_.data());
@@ -257,10 +274,10 @@ class RadiositySolver {
 
   float scattered_irradiance(std::uint32_t cell, std::size_t side, std::size_t column) const {
     const auto element = elements_.element_of_cell[cell];
-    const float inside = enclosed(cell), seen = gathered_[(2 * element + side) * columns_ + column];
-    if (inside == 0.0f) return rest(2 * cell + side) * seen;
+    const float open = rest(2 * cell + side), inside = std::min(enclosed(cell), open), seen = gathered_[(2 * element + side) * columns_ + column];
+    if (inside == 0.0f) return open * seen;
     const float seen_inside = gathered_[(2 * enclosed_part_[element] + side) * columns_ + column];
-    return std::max(0.0f, rest(2 * cell + side) - inside) * seen + inside * seen_inside;
+    return (open - inside) * seen + inside * seen_inside;
   }
 
   void facet_row(std::size_t t, std::size_t facet, std::size_t i, std::size_t count, std::vector<float>& irradiance, std::vector<float>& sunlit,
