@@ -200,18 +200,35 @@ class DirectLightSolver {
     Vec3 u, v;
     orthonormal_frame(sun.direction, u, v);
     const auto seed = mix(settings_.seed, sun_stream);
-    std::vector<VisibleCounts> counts(samples);
-    std::vector<double> line_area(samples);
-    tbb::parallel_for(std::uint32_t{0}, samples, [&](std::uint32_t i) {
-      // points of the disc on a sunflower spiral: equal areas
-      const double r = radius * std::sqrt((i + 0.5) / samples), a = 2.399963229728653 * i + 2.0 * std::numbers::pi * unit_interval(seed);
-      Vec3 d = glm::normalize(sun.direction + std::tan(r) * (std::cos(a) * u + std::sin(a) * v));
-      if (d.z < 1e-3 && s_.periodic) d = glm::normalize(Vec3{d.x, d.y, 1e-3});
-      clear(counts[i], cells);
-      const auto p = project_set_member(s_, d, i, pitch, mix(seed, 1));
-      line_area[i] = p.line_area;
-      count_visible(s_, p, false, counts[i]);
-    });
+    // a few samples at a time, for memory's sake; sums in the samples' order
+    constexpr std::uint32_t batch = 4;
+    std::vector<VisibleCounts> counts(std::min(batch, samples));
+    std::vector<float> all(cells, 0.0f), visible(cells, 0.0f);
+    double line_area = 0;  // mean over the samples
+    std::vector<double> line_areas(counts.size());
+    for (std::uint32_t first = 0; first < samples; first += batch) {
+      const std::uint32_t n = std::min(batch, samples - first);
+      tbb::parallel_for(std::uint32_t{0}, n, [&](std::uint32_t k) {
+        // points of the disc on a sunflower spiral: equal areas
+        const std::uint32_t i = first + k;
+        const double r = radius * std::sqrt((i + 0.5) / samples), a = 2.399963229728653 * i + 2.0 * std::numbers::pi * unit_interval(seed);
+        Vec3 d = glm::normalize(sun.direction + std::tan(r) * (std::cos(a) * u + std::sin(a) * v));
+        if (d.z < 1e-3 && s_.periodic) d = glm::normalize(Vec3{d.x, d.y, 1e-3});
+        clear(counts[k], cells);
+        const auto p = project_set_member(s_, d, i, pitch, mix(seed, 1));
+        line_areas[k] = p.line_area;
+        count_visible(s_, p, false, counts[k]);
+      });
+      for (std::uint32_t k = 0; k < n; ++k) line_area += line_areas[k] / samples;
+      tbb::parallel_for(tbb::blocked_range<std::size_t>(0, cells, 8192), [&](const auto& range) {
+        for (std::uint32_t k = 0; k < n; ++k)
+          for (std::size_t c = range.begin(); c < range.end(); ++c) {
+            all[c] += counts[k].all[c];
+            visible[c] += counts[k].visible[c];
+          }
+      });
+    }
+    counts = {};
     auto& lit = out_.sunlit.emplace_back(2 * cells, 0.0f);
     auto& cosine = out_.sun_cosine.emplace_back(s_.size());
     for (std::size_t t = 0; t < s_.size(); ++t)
@@ -220,17 +237,10 @@ class DirectLightSolver {
     Conservation conservation;
     double total = 0;
     for (std::size_t c = 0; c < cells; ++c) {
-      float all = 0, visible = 0;
-      double power = 0;
-      for (std::uint32_t k = 0; k < samples; ++k) {
-        all += counts[k].all[c];
-        visible += counts[k].visible[c];
-        power += counts[k].visible[c] * line_area[k] / samples;
-      }
-      conservation.add(is_ground(c), power, 0.0);
-      total += all;
-      unsampled[c] = all == 0.0f;
-      if (all > 0.0f) lit[2 * c + (cosine[e_.row_of_cell[c]] > 0.0f ? 0 : 1)] = visible / all;
+      conservation.add(is_ground(c), visible[c] * line_area / samples, 0.0);
+      total += all[c];
+      unsampled[c] = all[c] == 0.0f;
+      if (all[c] > 0.0f) lit[2 * c + (cosine[e_.row_of_cell[c]] > 0.0f ? 0 : 1)] = visible[c] / all[c];
     }
     // an unsampled cell's lit side may be the other one than its element's mean says: keep the fraction, move it to the side that faces the sun
     fill_unsampled(e_, unsampled, lit);

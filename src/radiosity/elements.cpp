@@ -42,7 +42,7 @@ std::vector<std::uint32_t> gather_materials(const ClusterOrder& tree, const std:
 }
 
 /// Cells tell sunlit from shaded parts of an element apart, where it reflects the sun's light on.
-constexpr double cells_per_element = 3.0;
+constexpr double cells_per_element = 2.0;
 
 std::uint16_t split_for(double area, double aim) {
   return static_cast<std::uint16_t>(std::clamp(std::lround(std::sqrt(area / aim)), 1L, 32L));

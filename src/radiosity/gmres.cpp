@@ -10,7 +10,7 @@ namespace sunfleck {
 namespace {
 
 constexpr std::size_t block_sides = 4096;
-constexpr std::size_t basis_bytes = std::size_t{384} << 20;  ///< a cycle grows until its basis fills this
+constexpr std::size_t basis_bytes = std::size_t{256} << 20;  ///< a cycle grows until its basis fills this
 constexpr int shortest_cycle = 8, longest_cycle = 40;
 
 /// Weighted dot products of two fields, one per column. Blocks are summed in order.

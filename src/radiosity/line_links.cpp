@@ -39,8 +39,8 @@ class HalfBuilder {
     }
   }
 
-  /// All directions of one bin that belong to this half, in order.
-  void add_bin(std::uint32_t bin, std::vector<DirectionLines*> lines) {
+  /// Directions of one bin that belong to this half, in order.
+  void add_bin(std::uint32_t bin, const std::vector<DirectionLines*>& lines) {
     std::vector<FarPair> far;
     for (auto* d : lines) {
       for (const auto s : d->open_up) add_open(open_up_, enclosed_up_, s);
@@ -158,31 +158,38 @@ class HalfBuilder {
       list = {};
     }
     auto& near = half.near;
+    constexpr std::uint32_t most = std::numeric_limits<std::uint16_t>::max();
+    // sort each row and merge equal columns in place
     std::vector<std::uint32_t> distinct(sides);
+    std::vector<std::uint16_t> count(column.size());
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, sides, 256), [&](const auto& range) {
       for (std::size_t i = range.begin(); i < range.end(); ++i) {
-        const auto begin = column.begin() + start[i], end = column.begin() + start[i + 1];
-        std::sort(begin, end);
-        std::uint32_t n = 0;
-        for (auto k = begin; k != end; ++k) n += k == begin || *k != k[-1];
-        distinct[i] = n;
-        half.lines[i] = static_cast<float>(end - begin) + half.open_up[i] + half.open_down[i];
+        std::sort(column.begin() + start[i], column.begin() + start[i + 1]);
+        std::uint32_t out = start[i];
+        for (std::uint32_t k = start[i]; k < start[i + 1]; ++k) {
+          if (out > start[i] && column[out - 1] == column[k] && count[out - 1] < most) {
+            ++count[out - 1];
+          } else {
+            column[out] = column[k];
+            count[out++] = 1;
+          }
+        }
+        distinct[i] = out - start[i];
+        half.lines[i] = static_cast<float>(start[i + 1] - start[i]) + half.open_up[i] + half.open_down[i];
       }
     });
     near.start.assign(sides + 1, 0);
-    for (std::size_t i = 0; i < sides; ++i) near.start[i + 1] = near.start[i] + distinct[i];
-    near.column.resize(near.start[sides]);
-    near.count.assign(near.start[sides], 0.0f);
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, sides, 256), [&](const auto& range) {
-      for (std::size_t i = range.begin(); i < range.end(); ++i) {
-        std::uint32_t out = near.start[i];
-        for (std::uint32_t k = start[i]; k < start[i + 1]; ++k) {
-          if (k > start[i] && column[k] != column[k - 1]) ++out;
-          near.column[out] = column[k];
-          near.count[out] += 1.0f;
-        }
-      }
-    });
+    for (std::size_t i = 0; i < sides; ++i) {
+      near.start[i + 1] = near.start[i] + distinct[i];
+      std::copy_n(column.begin() + start[i], distinct[i], column.begin() + near.start[i]);
+      std::copy_n(count.begin() + start[i], distinct[i], count.begin() + near.start[i]);
+    }
+    column.resize(near.start[sides]);
+    count.resize(near.start[sides]);
+    column.shrink_to_fit();
+    count.shrink_to_fit();
+    near.column = std::move(column);
+    near.count = std::move(count);
   }
 
   void far_rows(HalfLinks& half) {
@@ -276,14 +283,14 @@ LineLinks line_links(const Elements& e, const ClusterTree* tree, const SunReflec
     bins[bin_of(direction[d])].push_back(d);
   }
   std::uint32_t done = 0;
-  // at least two bins' worth of work for the threads at a time
-  for (std::uint32_t first = 0; first < direction_bins;) {
-    std::vector<std::uint32_t> batch;
-    std::uint32_t last = first;
-    while (last < direction_bins && (last == first || batch.size() < 8)) {
-      batch.insert(batch.end(), bins[last].begin(), bins[last].end());
-      ++last;
-    }
+  // a batch of directions, mostly of one bin, keeps the threads busy; its fragments wait in memory to be sorted into links
+  std::vector<std::uint32_t> queue;
+  for (const auto& bin : bins) queue.insert(queue.end(), bin.begin(), bin.end());
+  const double expected = static_cast<double>(e.size()) * settings.density.lines_per_element;
+  const std::size_t batch_size = static_cast<std::size_t>(std::clamp(4e6 / std::max(1.0, expected), 2.0, 16.0));
+  for (std::size_t first = 0; first < queue.size(); first += batch_size) {
+    const std::vector<std::uint32_t> batch(queue.begin() + static_cast<std::ptrdiff_t>(first),
+                                           queue.begin() + static_cast<std::ptrdiff_t>(std::min(queue.size(), first + batch_size)));
     std::vector<DirectionLines> found(batch.size());
     std::vector<double> line_area(batch.size());
     tbb::parallel_for(std::size_t{0}, batch.size(), [&](std::size_t i) {
@@ -301,20 +308,17 @@ LineLinks line_links(const Elements& e, const ClusterTree* tree, const SunReflec
     for (const double a : line_area) links.area_of_line += 2.0 * a / (static_cast<double>(directions) * directions);
     for (const auto& f : found) links.fragments += f.near.size() + f.far.size() + f.open_up.size();
     const auto add = [&](std::uint32_t h) {
-      std::size_t i = 0;
-      for (std::uint32_t bin = first; bin < last; ++bin) {
+      for (std::size_t i = 0; i < batch.size();) {
+        const auto bin = bin_of(direction[batch[i]]);
         std::vector<DirectionLines*> mine;
-        for (const auto d : bins[bin]) {
-          if (d % 2 == h) mine.push_back(&found[i]);
-          ++i;
-        }
-        builder[h].add_bin(bin, std::move(mine));
+        for (; i < batch.size() && bin_of(direction[batch[i]]) == bin; ++i)
+          if (batch[i] % 2 == h) mine.push_back(&found[i]);
+        builder[h].add_bin(bin, mine);
       }
     };
     tbb::parallel_invoke([&] { add(0); }, [&] { add(1); });
     done += static_cast<std::uint32_t>(batch.size());
     progress.fraction("lines", static_cast<double>(done) / directions);
-    first = last;
   }
   links.whole.resize(e.size());
   std::iota(links.whole.begin(), links.whole.end(), 0u);

@@ -22,8 +22,8 @@ std::uint32_t bin_of(const Vec3& direction);
 /// lines_i = sum_j count_ij + far_i + open_up_i + open_down_i, so energy is conserved and reciprocity holds at any density.
 struct NearLinks {
   std::vector<std::uint32_t> start;   ///< [sides + 1]
-  std::vector<std::uint32_t> column;  ///< [links] rising within a row
-  std::vector<float> count;           ///< [links]
+  std::vector<std::uint32_t> column;  ///< [links] never falling within a row
+  std::vector<std::uint16_t> count;   ///< [links]; more lines than it can hold are further links with the same column
 };
 
 /// Lines that run so far that a cluster may stand for its elements at both ends. What a side receives along channel q is the mean of

@@ -65,7 +65,7 @@ void near_rows(const NearLinks& near, const float* b, float* s, std::size_t begi
       for (std::size_t c = 0; c < n; ++c) total[c] = 0.0f;
     for (std::uint32_t k = near.start[i]; k < near.start[i + 1]; ++k) {
       const float* from = b + std::size_t{near.column[k]} * n;
-      const float count = near.count[k];
+      const auto count = static_cast<float>(near.count[k]);
       for (std::size_t c = 0; c < n; ++c) total[c] += count * from[c];
     }
     if (Columns)

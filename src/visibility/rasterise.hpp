@@ -39,7 +39,6 @@ void rasterise(const Surface& s, const Projection& p, const std::uint32_t* list,
   const float xx = f(p.x_row.x), xy = f(p.x_row.y), xz = f(p.x_row.z), x0 = f(p.x0);
   const float yx = f(p.y_row.x), yy = f(p.y_row.y), yz = f(p.y_row.z), y0 = f(p.y0);
   const float zx = f(p.z_row.x), zy = f(p.z_row.y), zz = f(p.z_row.z);
-  const float dx = f(p.direction.x), dy = f(p.direction.y), dz = f(p.direction.z);
   for (std::size_t first = begin; first < end; first += block) {
     const int n = static_cast<int>(std::min<std::size_t>(block, end - first));
     alignas(64) float X[3][block] = {}, Y[3][block] = {}, Z[3][block] = {};
@@ -64,14 +63,24 @@ void rasterise(const Surface& s, const Projection& p, const std::uint32_t* list,
         }
       }
     }
-    // most triangles of a coarse grid meet no pixel centre: sort them out sixteen at a time
+    // most triangles of a coarse grid meet no pixel centre: sort them out sixteen at a time. Where the bounding box holds one centre only,
+    // the edges tell; the tolerance leaves close calls to the scan below.
     for (int i = 0; i < block; ++i) {
       const float low = std::min(std::min(Y[0][i], Y[1][i]), Y[2][i]), high = std::max(std::max(Y[0][i], Y[1][i]), Y[2][i]);
       const float left = std::min(std::min(X[0][i], X[1][i]), X[2][i]), right = std::max(std::max(X[0][i], X[1][i]), X[2][i]);
-      ya[i] = static_cast<int>(std::ceil(low - 0.5f));
-      yb[i] = static_cast<int>(std::ceil(high - 0.5f)) - 1;
-      const int xa = static_cast<int>(std::ceil(left - 0.5f)), xb = static_cast<int>(std::ceil(right - 0.5f)) - 1;
-      meets[i] = static_cast<int>(ya[i] <= yb[i]) & static_cast<int>(xa <= xb);
+      const float first_row = std::ceil(low - 0.5f), last_row = std::ceil(high - 0.5f) - 1.0f;
+      const float first_column = std::ceil(left - 0.5f), last_column = std::ceil(right - 0.5f) - 1.0f;
+      ya[i] = static_cast<int>(first_row);
+      yb[i] = static_cast<int>(last_row);
+      const float x = first_column + 0.5f, y = first_row + 0.5f;
+      const float e0 = (X[1][i] - X[0][i]) * (y - Y[0][i]) - (Y[1][i] - Y[0][i]) * (x - X[0][i]);
+      const float e1 = (X[2][i] - X[1][i]) * (y - Y[1][i]) - (Y[2][i] - Y[1][i]) * (x - X[1][i]);
+      const float e2 = (X[0][i] - X[2][i]) * (y - Y[2][i]) - (Y[0][i] - Y[2][i]) * (x - X[2][i]);
+      const float least = std::min(std::min(e0, e1), e2), most = std::max(std::max(e0, e1), e2);
+      const int holds = static_cast<int>(first_row <= last_row) & static_cast<int>(first_column <= last_column);
+      const int several = static_cast<int>(first_row < last_row) | static_cast<int>(first_column < last_column);
+      const int inside = static_cast<int>(least >= -1e-4f) | static_cast<int>(most <= 1e-4f);
+      meets[i] = holds & (several | inside);
     }
     unsigned hits = 0;
     for (int i = 0; i < n; ++i) hits |= static_cast<unsigned>(meets[i]) << i;
@@ -87,7 +96,7 @@ void rasterise(const Surface& s, const Projection& p, const std::uint32_t* list,
       ProjectedTriangle triangle;
       triangle.index = t;
       triangle.split = s.split[t];
-      triangle.front_up = s.normal[0][t] * dx + s.normal[1][t] * dy + s.normal[2][t] * dz > 0.0f;
+      triangle.front_up = area > 0.0f;  // both kinds of projection are right-handed about the direction
       triangle.u = {0.0f, by * inverse, -bx * inverse};
       triangle.v = {0.0f, -ay * inverse, ax * inverse};
       const float d1 = Z[1][i] - Z[0][i], d2 = Z[2][i] - Z[0][i];
