@@ -95,7 +95,8 @@ class DirectLightSolver {
     }
   }
 
-  /// E_side / E_horizontal = pi * sum over directions of r(d) * lines on which the side sees the sky / sum of all its lines.
+  /// E_side / E_horizontal = pi * sum over directions of r(d) * lines on which the side sees the sky / sum of all its lines, each line
+  /// counted by the area it stands for.
   void sky() {
     const auto& density = settings_.density;
     const std::size_t cells = s_.cells();
@@ -107,8 +108,7 @@ class DirectLightSolver {
     out_.sky_seen.assign(2 * cells, 0.0f);
     constexpr std::uint32_t batch = 8;
     std::vector<VisibleCounts> counts(batch), counts_below(below ? batch : 0);
-    double line_area = 0;  // mean over the directions
-    std::vector<double> line_areas(batch);
+    std::vector<float> weight(batch);  // a line of this direction stands for so many of area pitch^2
     std::vector<Vec3> direction(batch);
     for (std::uint32_t first = 0; first < density.sky_directions; first += batch) {
       progress_.check();
@@ -117,7 +117,7 @@ class DirectLightSolver {
       tbb::parallel_for(std::uint32_t{0}, n, [&](std::uint32_t i) {
         direction[i] = hemisphere_direction(first + i, density.sky_directions, mix(settings_.seed, sky_stream));
         const auto p = project_set_member(s_, direction[i], first + i, pitch, mix(settings_.seed, sky_stream, 1));
-        line_areas[i] = p.line_area;
+        weight[i] = static_cast<float>(p.line_area / (pitch * pitch));
         clear(counts[i], cells);
         count_visible(s_, p, false, counts[i]);
         if (below) {
@@ -125,7 +125,8 @@ class DirectLightSolver {
           count_visible(s_, p, true, counts_below[i]);
         }
       });
-      for (std::uint32_t i = 0; i < n; ++i) line_area += line_areas[i] / density.sky_directions;
+      for (std::uint32_t i = 0; i < n; ++i)
+        for (const float lines : counts[i].all) out_.fragments += static_cast<std::uint64_t>(lines);
       std::vector<float> radiance(n * skies_.size()), radiance_below(n * skies_.size());
       for (std::uint32_t i = 0; i < n; ++i)
         for (std::size_t k = 0; k < skies_.size(); ++k) {
@@ -136,31 +137,27 @@ class DirectLightSolver {
         for (std::uint32_t i = 0; i < n; ++i) {
           const auto dx = static_cast<float>(direction[i].x), dy = static_cast<float>(direction[i].y), dz = static_cast<float>(direction[i].z);
           for (std::size_t c = range.begin(); c < range.end(); ++c) {
-            const float lines = counts[i].all[c];
-            if (lines == 0.0f) continue;
-            all[c] += lines;
+            if (counts[i].all[c] == 0.0f) continue;
+            all[c] += weight[i] * counts[i].all[c];
+            const float visible = weight[i] * counts[i].visible[c];
             const auto t = e_.row_of_cell[c];
             const bool front_up = s_.normal[0][t] * dx + s_.normal[1][t] * dy + s_.normal[2][t] * dz > 0.0f;
             const std::size_t up = 2 * c + (front_up ? 0 : 1);
-            out_.sky_seen[up] += counts[i].visible[c];
-            for (std::size_t k = 0; k < skies_.size(); ++k) out_.sky[k][up] += radiance[i * skies_.size() + k] * counts[i].visible[c];
+            out_.sky_seen[up] += visible;
+            for (std::size_t k = 0; k < skies_.size(); ++k) out_.sky[k][up] += radiance[i * skies_.size() + k] * visible;
             if (below) {
-              out_.sky_seen[up ^ 1] += counts_below[i].visible[c];
-              for (std::size_t k = 0; k < skies_.size(); ++k) out_.sky[k][up ^ 1] += radiance_below[i * skies_.size() + k] * counts_below[i].visible[c];
+              const float visible_below = weight[i] * counts_below[i].visible[c];
+              out_.sky_seen[up ^ 1] += visible_below;
+              for (std::size_t k = 0; k < skies_.size(); ++k) out_.sky[k][up ^ 1] += radiance_below[i * skies_.size() + k] * visible_below;
             }
           }
         }
       });
     }
     std::vector<bool> unsampled(cells);
-    double total = 0;
-    for (std::size_t c = 0; c < cells; ++c) {
-      total += all[c];
-      unsampled[c] = all[c] == 0.0f;
-    }
-    out_.fragments += static_cast<std::uint64_t>(total);
-    // a side of area A meets A D / (2 line area) lines
-    const double area_of_line = 2.0 * line_area / density.sky_directions;
+    for (std::size_t c = 0; c < cells; ++c) unsampled[c] = all[c] == 0.0f;
+    // a side of area A meets A D / (2 pitch^2) lines
+    const double area_of_line = 2.0 * pitch * pitch / density.sky_directions;
     normalise(out_.sky_seen, all, unsampled, area_of_line);
     for (auto& sky : out_.sky) normalise(sky, all, unsampled, area_of_line);
     for (std::size_t i = 0; i < out_.sky_seen.size(); ++i)
@@ -173,9 +170,21 @@ class DirectLightSolver {
   /// Sums over lines become means over each cell's lines.
   void normalise(std::vector<float>& value, const std::vector<float>& all, const std::vector<bool>& unsampled, double area_of_line) {
     Conservation conservation;
+    // in a finite scene the lines that meet plants sample their area too: taken by their number, not by their nominal area, plates that see
+    // the whole sky get all of it
+    double per_line[2] = {area_of_line, area_of_line};
+    if (!s_.periodic) {
+      double area[2] = {0, 0}, lines[2] = {0, 0};
+      for (std::size_t c = 0; c < all.size(); ++c) {
+        area[is_ground(c)] += cell_area(c);
+        lines[is_ground(c)] += all[c];
+      }
+      for (int g = 0; g < 2; ++g)
+        if (lines[g] > 0.0) per_line[g] = area[g] / lines[g];
+    }
     for (std::size_t c = 0; c < all.size(); ++c) {
       if (unsampled[c]) continue;
-      conservation.add(is_ground(c), (static_cast<double>(value[2 * c]) + value[2 * c + 1]) * area_of_line, 0.0);
+      conservation.add(is_ground(c), (static_cast<double>(value[2 * c]) + value[2 * c + 1]) * per_line[is_ground(c)], 0.0);
       for (int side = 0; side < 2; ++side) value[2 * c + side] /= all[c];
     }
     fill_unsampled(e_, unsampled, value);

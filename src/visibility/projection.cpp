@@ -10,16 +10,26 @@ namespace sunfleck {
 namespace {
 
 constexpr double golden_ratio_fraction = 0.6180339887498949;
+constexpr double fewest_periodic_lines = 1024.0;  ///< towards the zenith
 
 Projection periodic_projection(const Surface& surface, const Vec3& d, double pitch, double shift_x, double shift_y) {
   const PeriodicCell& cell = *surface.periodic;
   Projection p;
   p.direction = d;
   p.wraps = true;
-  // as many lines per perpendicular area in every direction: a horizontal pixel stands for its area times cos(zenith)
-  const double wanted = cell.area() * d.z / (pitch * pitch);
-  p.columns = std::max(1, static_cast<int>(std::lround(std::sqrt(wanted * cell.width() / cell.depth()))));
-  p.rows = std::max(1, static_cast<int>(std::lround(wanted / p.columns)));
+  // as many lines per perpendicular area in every direction: a horizontal pixel stands for its area times cos(zenith). Links count
+  // lines of all directions alike, so small cells get finer grids, whose sizes round less.
+  const double wanted = std::max(cell.area() / (pitch * pitch), fewest_periodic_lines) * d.z;
+  const auto middle = static_cast<int>(std::lround(std::sqrt(wanted * cell.width() / cell.depth())));
+  double least = 1e30;
+  for (int columns = std::max(1, middle - middle / 8), last = std::max(1, middle + middle / 8); columns <= last; ++columns) {
+    const int rows = std::max(1, static_cast<int>(std::lround(wanted / columns)));
+    const double error = std::fabs(static_cast<double>(columns) * rows - wanted);
+    if (error >= least) continue;
+    least = error;
+    p.columns = columns;
+    p.rows = rows;
+  }
   const double per_x = p.columns / cell.width(), per_y = p.rows / cell.depth();
   p.x_row = Vec3{1.0, 0.0, -d.x / d.z} * per_x;
   p.y_row = Vec3{0.0, 1.0, -d.y / d.z} * per_y;
