@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include <sunfleck/visibility/projection.hpp>
@@ -11,18 +12,40 @@ namespace {
 
 constexpr std::uint32_t nothing = 0xffffffffu;
 
-/// Depth and cell of what is nearest to the direction, for a strip of rows.
+/// What is nearest to the eye, for a strip of rows.
 struct DepthBuffer {
-  std::vector<float> depth;          ///< along the direction looked from: larger is nearer
-  std::vector<std::uint32_t> cell;
-  std::vector<std::uint32_t> facet;  ///< with the orientation in bit 0, to order coincident fragments
+  std::vector<float> depth;          ///< larger is nearer
+  std::vector<std::uint32_t> code;   ///< 2 * cell + (1 if the front faces the eye)
 };
 
-/// Of two coincident facets, is the candidate in front? For i < j, j lies on the front side of i.
+/// Of two coincident fragments, is the candidate in front? For facets i < j, j lies on the front side of i; cells rise with facets.
 bool coincident_in_front(std::uint32_t candidate, std::uint32_t standing) {
   const bool later = (candidate >> 1) > (standing >> 1);
   const bool front_of_lower_up = (later ? standing : candidate) & 1u;
   return later == front_of_lower_up;
+}
+
+/// A run of fragments of one triangle: depth and code are functions of the position in the run.
+template <class Depth, class Code>
+void draw_run(int count, float tolerance, float* depth, std::uint32_t* standing, const Depth& depth_at, const Code& code_at) {
+  int ties = 0;
+  for (int i = 0; i < count; ++i) {  // without branches, so that it becomes vector code
+    const float z = depth_at(i), d = depth[i];
+    const std::uint32_t code = code_at(i), old = standing[i];
+    const bool nearer = z > d + tolerance;
+    ties |= static_cast<int>(z > d - tolerance) & static_cast<int>(!nearer);
+    depth[i] = nearer ? z : d;
+    standing[i] = nearer ? code : old;
+  }
+  if (!ties) return;
+  for (int i = 0; i < count; ++i) {
+    const float z = depth_at(i);
+    const std::uint32_t code = code_at(i);
+    if (code != standing[i] && standing[i] != nothing && std::fabs(z - depth[i]) <= tolerance && coincident_in_front(code, standing[i])) {
+      depth[i] = z;
+      standing[i] = code;
+    }
+  }
 }
 
 /// Triangles whose rows meet each strip, in rising order.
@@ -76,33 +99,45 @@ StripLists strips_of(const Surface& s, const Projection& p, int strip_rows, int 
 void count_strip(const Surface& s, const Projection& p, bool from_below, const std::uint32_t* list, std::size_t triangles, int row_begin, int row_end,
                  DepthBuffer& buffer, VisibleCounts& counts) {
   const std::size_t pixels = static_cast<std::size_t>(row_end - row_begin) * p.columns;
-  buffer.depth.assign(pixels, -std::numeric_limits<float>::infinity());
-  buffer.cell.assign(pixels, nothing);
-  buffer.facet.resize(pixels);
+  buffer.depth.assign(pixels, -std::numeric_limits<float>::max());
+  buffer.code.assign(pixels, nothing);
   const float sign = from_below ? -1.0f : 1.0f;
   const auto tolerance = static_cast<float>(s.depth_tolerance * (p.wraps ? p.direction.z : 1.0));
   rasterise(s, p, list, 0, triangles, row_begin, row_end, [&](const ProjectedTriangle& t, int row, int column, int count, float dx, float dy) {
     const std::size_t first = static_cast<std::size_t>(row - row_begin) * p.columns + column;
-    const std::uint32_t base = s.first_cell[t.index], facet = 2 * t.index + (t.front_up != from_below ? 1u : 0u);
-    if (t.split == 1) counts.all[base] += static_cast<float>(count);
-    for (int i = 0; i < count; ++i) {
-      const float x = dx + static_cast<float>(i), z = sign * t.depth_at(x, dy);
-      const std::uint32_t cell = t.split == 1 ? base : base + cell_of(t.u.at(x, dy), t.v.at(x, dy), t.split);
-      if (t.split != 1) counts.all[cell] += 1.0f;
-      const std::size_t q = first + i;
-      if (z > buffer.depth[q] + tolerance ||
-          (z > buffer.depth[q] - tolerance && (buffer.cell[q] == nothing || coincident_in_front(facet, buffer.facet[q])))) {
-        buffer.depth[q] = z;
-        buffer.cell[q] = cell;
-        buffer.facet[q] = facet;
+    const std::uint32_t base = s.first_cell[t.index], front = t.front_up != from_below ? 1u : 0u;
+    float* depth = buffer.depth.data() + first;
+    std::uint32_t* code = buffer.code.data() + first;
+    const auto depth_at = [&t, dx, dy, sign](int i) { return sign * t.depth_at(dx + static_cast<float>(i), dy); };
+    if (t.split == 1) {
+      counts.all[base] += static_cast<float>(count);
+      draw_run(count, tolerance, depth, code, depth_at, [c = 2 * base + front](int) { return c; });
+      return;
+    }
+    constexpr int chunk = 64;
+    for (int begin = 0; begin < count; begin += chunk) {
+      const int n = std::min(chunk, count - begin);
+      alignas(64) std::uint32_t codes[chunk];
+      const float x0 = dx + static_cast<float>(begin), u0 = t.u.at(x0, dy), v0 = t.v.at(x0, dy), du = t.u.per_x, dv = t.v.per_x;
+      const int split = t.split;
+      for (int i = 0; i < n; ++i) {
+        const auto x = static_cast<float>(i);
+        codes[i] = 2 * (base + cell_of(u0 + x * du, v0 + x * dv, split)) + front;
       }
+      for (int i = 0; i < n;) {
+        int end = i + 1;
+        while (end < n && codes[end] == codes[i]) ++end;
+        counts.all[codes[i] >> 1] += static_cast<float>(end - i);
+        i = end;
+      }
+      draw_run(n, tolerance, depth + begin, code + begin, [&](int i) { return depth_at(begin + i); }, [&codes](int i) { return codes[i]; });
     }
   });
   for (std::size_t q = 0; q < pixels;) {
-    const std::uint32_t cell = buffer.cell[q];
+    const std::uint32_t code = buffer.code[q];
     std::size_t end = q + 1;
-    while (end < pixels && buffer.cell[end] == cell) ++end;
-    if (cell != nothing) counts.visible[cell] += static_cast<float>(end - q);
+    while (end < pixels && buffer.code[end] == code) ++end;
+    if (code != nothing) counts.visible[code >> 1] += static_cast<float>(end - q);
     q = end;
   }
 }
@@ -110,9 +145,9 @@ void count_strip(const Surface& s, const Projection& p, bool from_below, const s
 }  // namespace
 
 void count_visible(const Surface& surface, const Projection& projection, bool from_below, VisibleCounts& counts) {
-  constexpr std::size_t buffer_bytes = std::size_t{4} << 20;
+  constexpr std::size_t buffer_bytes = std::size_t{1} << 20;
   thread_local DepthBuffer buffer;
-  const auto fitting = buffer_bytes / (12 * static_cast<std::size_t>(projection.columns));
+  const auto fitting = buffer_bytes / (8 * static_cast<std::size_t>(projection.columns));
   const int strip_rows = static_cast<int>(std::clamp<std::size_t>(fitting, 16, static_cast<std::size_t>(std::max(16, projection.rows))));
   const int strips = (projection.rows + strip_rows - 1) / strip_rows;
   if (strips == 1) {

@@ -103,18 +103,23 @@ void rasterise(const Surface& s, const Projection& p, const std::uint32_t* list,
       triangle.depth = {Z[0][i], d1 * triangle.u.per_x + d2 * triangle.v.per_x, d1 * triangle.u.per_y + d2 * triangle.v.per_y};
       triangle.depth_low = std::min(std::min(Z[0][i], Z[1][i]), Z[2][i]);
       triangle.depth_high = std::max(std::max(Z[0][i], Z[1][i]), Z[2][i]);
+      // an edge is walked from its lower end, by both triangles that share it: no gaps, no double hits
+      int low = 0, middle = 1, high = 2;
+      if (Y[low][i] > Y[middle][i]) std::swap(low, middle);
+      if (Y[middle][i] > Y[high][i]) std::swap(middle, high);
+      if (Y[low][i] > Y[middle][i]) std::swap(low, middle);
+      const float x_low = X[low][i], y_low = Y[low][i], x_middle = X[middle][i], y_middle = Y[middle][i];
+      const auto slope = [&](int from, int to) {
+        const float rise = Y[to][i] - Y[from][i];
+        return rise > 0.0f ? (X[to][i] - X[from][i]) / rise : 0.0f;
+      };
+      const float long_slope = slope(low, high), lower_slope = slope(low, middle), upper_slope = slope(middle, high);
       const int y_first = p.wraps ? ya[i] : std::max(ya[i], row_begin), y_last = p.wraps ? yb[i] : std::min(yb[i], row_end - 1);
       for (int y = y_first; y <= y_last; ++y) {
         const float yc = static_cast<float>(y) + 0.5f;
-        float xl = 1e30f, xr = -1e30f;
-        for (int k = 0; k < 3; ++k) {
-          const int m = k == 2 ? 0 : k + 1;
-          if ((Y[k][i] < yc) != (Y[m][i] < yc)) {
-            const float x = X[k][i] + (yc - Y[k][i]) * (X[m][i] - X[k][i]) / (Y[m][i] - Y[k][i]);
-            xl = std::min(xl, x);
-            xr = std::max(xr, x);
-          }
-        }
+        const float x_long = x_low + (yc - y_low) * long_slope;
+        const float x_short = yc <= y_middle ? x_low + (yc - y_low) * lower_slope : x_middle + (yc - y_middle) * upper_slope;
+        const float xl = std::min(x_long, x_short), xr = std::max(x_long, x_short);
         if (!(xl <= xr)) continue;
         int xa = static_cast<int>(std::ceil(xl - 0.5f)), xb = static_cast<int>(std::ceil(xr - 0.5f)) - 1;
         if (!p.wraps) {

@@ -39,7 +39,7 @@ struct VisibleCounts {
 };
 
 /// Adds the counts of one projection. `from_below` counts what sees the opposite direction instead. Single-threaded; the working
-/// buffer is bounded to about 4 MiB.
+/// buffer is bounded to about 1 MiB.
 void count_visible(const Surface& surface, const Projection& projection, bool from_below, VisibleCounts& counts);
 
 /// All fragments of a projection, sorted along each line.

@@ -1,6 +1,7 @@
 // Triangles prepared for parallel projection: single precision about a local origin, structure of arrays.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -30,14 +31,12 @@ struct Surface {
 };
 
 /// Number of the cell that holds barycentric (u, v) in a triangle split k times: rows of constant v, each from low to high u.
-inline std::uint32_t cell_of(float u, float v, int k) {
+inline std::uint32_t cell_of(float u, float v, int k) {  // without branches, so that loops over it become vector code
   const float a = u * static_cast<float>(k), b = v * static_cast<float>(k);
-  int j = static_cast<int>(b);
-  j = j < 0 ? 0 : (j > k - 1 ? k - 1 : j);
-  int i = static_cast<int>(a);
-  i = i < 0 ? 0 : (i > k - 1 - j ? k - 1 - j : i);
-  const bool upper = (a - static_cast<float>(i)) + (b - static_cast<float>(j)) > 1.0f && i + j < k - 1;
-  return static_cast<std::uint32_t>(j * (2 * k - j) + 2 * i + (upper ? 1 : 0));
+  const int j = std::min(std::max(static_cast<int>(b), 0), k - 1);
+  const int i = std::min(std::max(static_cast<int>(a), 0), k - 1 - j);
+  const int upper = static_cast<int>((a - static_cast<float>(i)) + (b - static_cast<float>(j)) > 1.0f) & static_cast<int>(i + j < k - 1);
+  return static_cast<std::uint32_t>(j * (2 * k - j) + 2 * i + upper);
 }
 
 /// Prepares facets of a scene in the order given. `split[i]` belongs to facet `order[i]`; facets of the ground must come last when
