@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <sunfleck/core/names.hpp>
+#include <sunfleck/radiosity/plan.hpp>
 #include <sunfleck/scene/facets.hpp>
 
 #include "cli/text_units.hpp"
@@ -127,6 +128,46 @@ void add_certificate(const Scene& scene, const std::string& method, std::vector<
     items.push_back({"certificate", true, "some organs are checked by path tracing after the solve"});
 }
 
+/// Above this many facets the copies are not laid out for the sake of a plan: they would take as long, and most of the memory, of the solve.
+constexpr std::uint64_t most_laid_out = 20'000'000;
+
+/// Elements, links and lines of the radiosity methods.
+void add_radiosity(const Scene& scene, const MethodChoice& choice, Progress& progress, Plan& plan) {
+  if (choice.method == "reference") {
+    plan.items.push_back({"elements", false, "the reference traces paths facet by facet, without elements or links"});
+    return;
+  }
+  if (plan.counts.facets() > most_laid_out || plan.counts.facets() == 0) {
+    plan.items.push_back({"prediction", false, fmt::format("elements and links are predicted for up to {} facets only", most_laid_out)});
+    return;
+  }
+  RadiositySettings settings;
+  settings.density = density_of(choice.quality);
+  settings.method = radiosity_method(choice.method);
+  const FacetScene facets = expand(scene);
+  if (facets.zero_area_facets == facets.size()) {
+    plan.items.push_back({"prediction", false, "no facet has an area"});
+    return;
+  }
+  const auto predicted = plan_radiosity(scene, facets, settings, progress);
+  static const std::vector<std::pair<std::string, std::string>> names{{"elements", "elements and cells"},
+                                                                      {"direct", "direct light on every cell"},
+                                                                      {"links", "links and clusters"},
+                                                                      {"fields", "light on elements, iteration"},
+                                                                      {"lines", "lines, until they are links"}};
+  for (const auto& [part, bytes] : predicted.memory)
+    for (const auto& [name, text] : names)
+      if (name == part) plan.memory.emplace_back(text, bytes);
+  plan.work.emplace_back("cells, with direct light", predicted.cells);
+  plan.work.emplace_back("elements, with scattered light", predicted.elements);
+  if (predicted.sky_fragments > 0) plan.work.emplace_back("lines meet surfaces, sky", predicted.sky_fragments);
+  if (predicted.sun_fragments > 0) plan.work.emplace_back("lines meet surfaces, sun", predicted.sun_fragments);
+  if (choice.method == "direct") return;
+  plan.work.emplace_back("lines meet surfaces, scattering", predicted.line_fragments);
+  if (predicted.clusters > 0) plan.work.emplace_back("clusters", predicted.clusters);
+  plan.work.emplace_back("links", predicted.links);
+}
+
 }  // namespace
 
 std::uint64_t Plan::memory_total() const {
@@ -135,7 +176,7 @@ std::uint64_t Plan::memory_total() const {
   return total;
 }
 
-Plan make_plan(const Scene& scene, const MethodChoice& choice) {
+Plan make_plan(const Scene& scene, const MethodChoice& choice, Progress& progress) {
   Plan plan;
   plan.choice = choice;
   plan.counts = count(scene);
@@ -149,6 +190,7 @@ Plan make_plan(const Scene& scene, const MethodChoice& choice) {
                  {"light on every facet", facets * solution_bytes_per_facet(scene)}};
   plan.work = {
       {"facets", facets}, {"organs", plan.counts.organs}, {"result bytes before compression", facets * result_bytes_per_facet(scene)}};
+  add_radiosity(scene, choice, progress, plan);
   return plan;
 }
 

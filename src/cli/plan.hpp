@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include <sunfleck/core/progress.hpp>
 #include <sunfleck/scene/counts.hpp>
 #include <sunfleck/scene/scene.hpp>
 
@@ -23,11 +24,12 @@ struct Plan {
   MethodChoice choice;
   SceneCounts counts;
   std::vector<PlanItem> items;
-  std::vector<std::pair<std::string, std::uint64_t>> memory;  ///< bytes per part, predicted
+  std::vector<std::pair<std::string, std::uint64_t>> memory;  ///< bytes per part, predicted; not all are held at the same time
   std::vector<std::pair<std::string, std::uint64_t>> work;    ///< predicted counts
   std::uint64_t memory_total() const;
 };
 
-Plan make_plan(const Scene& scene, const MethodChoice& choice);
+/// Lays the scene's copies out (up to 20 million facets) and traces a pilot of few lines to predict links.
+Plan make_plan(const Scene& scene, const MethodChoice& choice, Progress& progress);
 
 }  // namespace sunfleck

@@ -87,7 +87,8 @@ void add_solve(CLI::App& verb, SolveOptions& o) {
   verb.add_option("--method", o.method, method_help)->type_name("NAME");
   verb.add_option("--quality", o.quality, quality_help)->type_name("NAME")->check(one_of(qualities));
   verb.add_option("--error", o.error,
-                  "wanted rms error of an organ's absorbed light, as a fraction of the mean (0.01 is 1 %); picks the quality")
+                  "wanted rms error of an organ's absorbed light, as a fraction of the mean (0.01 is 1 %): takes the cheapest quality "
+                  "that aims at it; the certificate tells what was reached")
       ->type_name("FRACTION")
       ->check(number_between(1e-4, 0.5));
   verb.add_option("--samples", o.samples, "reference method only: paths per facet")->type_name("N")->check(count_from(16, 4294967295.0));

@@ -49,7 +49,7 @@ void print_text(const Scene& scene, const Plan& plan) {
   print_items(plan, false);
   fmt::print("predicted memory\n");
   for (const auto& [part, bytes] : plan.memory) fmt::print("  {:<32} {:>10}\n", part, bytes_text(static_cast<double>(bytes)));
-  fmt::print("  {:<32} {:>10}\n", "in all", bytes_text(static_cast<double>(plan.memory_total())));
+  fmt::print("  {:<32} {:>10}\n", "in all, at most", bytes_text(static_cast<double>(plan.memory_total())));
   fmt::print("predicted work\n");
   for (const auto& [name, amount] : plan.work) fmt::print("  {:<32} {:>10}\n", name, amount);
 }
@@ -60,7 +60,7 @@ int verb_plan(const PlanOptions& options, Progress& progress) {
   const Scene scene = read_scene(options.scene);
   const MethodChoice choice = choose_method(options.method, options.quality, std::nullopt, scene.solve);
   for (const auto& note : scene.notes) progress.line("note: " + note);
-  const Plan plan = make_plan(scene, choice);
+  const Plan plan = make_plan(scene, choice, progress);
   if (options.json)
     fmt::print("{}\n", json_of(scene, plan).dump(2));
   else

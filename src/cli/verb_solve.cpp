@@ -54,9 +54,7 @@ SolveReport run_method(const MethodChoice& choice, const Scene& scene, const Fac
   settings.seed = seed;
   settings.threads = options.threads;
   settings.density = density_of(choice.quality);
-  settings.method = choice.method == "flat"     ? RadiosityMethod::flat
-                    : choice.method == "direct" ? RadiosityMethod::direct
-                                                : RadiosityMethod::clustering;
+  settings.method = radiosity_method(choice.method);
   return solve_radiosity(scene, facets, settings, sink, progress);
 }
 

@@ -61,7 +61,11 @@ class DirectLightSolver {
       : scene_(scene), plant_facets_(facets.plant_facets), e_(elements), s_(elements.surface), settings_(settings), timings_(timings), progress_(progress) {}
 
   DirectLight run() {
-    list_sources();
+    auto sources = light_sources(scene_);
+    skies_ = std::move(sources.skies);
+    suns_ = std::move(sources.suns);
+    out_.sky_of_state = std::move(sources.sky_of_state);
+    out_.sun_of_state = std::move(sources.sun_of_state);
     Stopwatch sky_watch;
     if (!skies_.empty()) sky();
     if (!skies_.empty()) add_seconds(timings_, "sky", sky_watch.seconds());
@@ -75,26 +79,6 @@ class DirectLightSolver {
   }
 
  private:
-  void list_sources() {
-    for (const auto& state : scene_.states) {
-      std::uint32_t sky_row = DirectLight::none, sun_row = DirectLight::none;
-      if (state.sky) {
-        for (sky_row = 0; sky_row < skies_.size() && !same_radiance(*skies_[sky_row], *state.sky); ++sky_row) {
-        }
-        if (sky_row == skies_.size()) skies_.push_back(&*state.sky);
-      }
-      if (state.sun) {
-        for (sun_row = 0; sun_row < suns_.size() && !(suns_[sun_row]->direction == state.sun->direction &&
-                                                      suns_[sun_row]->angular_diameter_deg == state.sun->angular_diameter_deg);
-             ++sun_row) {
-        }
-        if (sun_row == suns_.size()) suns_.push_back(&*state.sun);
-      }
-      out_.sky_of_state.push_back(sky_row);
-      out_.sun_of_state.push_back(sun_row);
-    }
-  }
-
   /// E_side / E_horizontal = pi * sum over directions of r(d) * lines on which the side sees the sky / sum of all its lines, each line
   /// counted by the area it stands for.
   void sky() {
@@ -291,6 +275,27 @@ std::size_t DirectLight::bytes() const {
   for (const auto* list : {&sky, &sunlit, &sun_cosine})
     for (const auto& v : *list) total += bytes_of(v);
   return total;
+}
+
+LightSources light_sources(const Scene& scene) {
+  LightSources out;
+  for (const auto& state : scene.states) {
+    std::uint32_t sky_row = DirectLight::none, sun_row = DirectLight::none;
+    if (state.sky) {
+      for (sky_row = 0; sky_row < out.skies.size() && !same_radiance(*out.skies[sky_row], *state.sky); ++sky_row) {
+      }
+      if (sky_row == out.skies.size()) out.skies.push_back(&*state.sky);
+    }
+    if (state.sun) {
+      const auto same = [&](const Sun& sun) { return sun.direction == state.sun->direction && sun.angular_diameter_deg == state.sun->angular_diameter_deg; };
+      for (sun_row = 0; sun_row < out.suns.size() && !same(*out.suns[sun_row]); ++sun_row) {
+      }
+      if (sun_row == out.suns.size()) out.suns.push_back(&*state.sun);
+    }
+    out.sky_of_state.push_back(sky_row);
+    out.sun_of_state.push_back(sun_row);
+  }
+  return out;
 }
 
 DirectLight direct_light(const Scene& scene, const FacetScene& facets, const Elements& elements, const RadiositySettings& settings, Timings& timings,

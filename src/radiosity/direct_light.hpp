@@ -26,6 +26,14 @@ struct DirectLight {
   std::size_t bytes() const;
 };
 
+/// The distinct skies and suns of a scene's states: states that differ in strength alone share one.
+struct LightSources {
+  std::vector<const Sky*> skies;
+  std::vector<const Sun*> suns;
+  std::vector<std::uint32_t> sky_of_state, sun_of_state;  ///< [s] row of the lists above, or DirectLight::none
+};
+LightSources light_sources(const Scene& scene);
+
 DirectLight direct_light(const Scene& scene, const FacetScene& facets, const Elements& elements, const RadiositySettings& settings, Timings& timings,
                          Progress& progress);
 

@@ -267,6 +267,11 @@ std::size_t LineLinks::bytes() const {
   return bytes_of_half(half[0]) + bytes_of_half(half[1]) + bytes_of(whole) + bytes_of(enclosed_part) + bytes_of(enclosed);
 }
 
+double line_batch(std::size_t elements, const RadiosityDensity& density) {
+  const double expected = static_cast<double>(elements) * density.lines_per_element;
+  return std::clamp(std::floor(4e6 / std::max(1.0, expected)), 2.0, 16.0);
+}
+
 LineLinks line_links(const Elements& e, const ClusterTree* tree, const SunReflection& sun, const RadiositySettings& settings, Progress& progress) {
   const std::uint32_t directions = settings.density.directions;
   const double pitch = std::sqrt(0.5 * e.element_area / settings.density.lines_per_element);
@@ -286,8 +291,7 @@ LineLinks line_links(const Elements& e, const ClusterTree* tree, const SunReflec
   // a batch of directions, mostly of one bin, keeps the threads busy; its fragments wait in memory to be sorted into links
   std::vector<std::uint32_t> queue;
   for (const auto& bin : bins) queue.insert(queue.end(), bin.begin(), bin.end());
-  const double expected = static_cast<double>(e.size()) * settings.density.lines_per_element;
-  const std::size_t batch_size = static_cast<std::size_t>(std::clamp(4e6 / std::max(1.0, expected), 2.0, 16.0));
+  const auto batch_size = static_cast<std::size_t>(line_batch(e.size(), settings.density));
   for (std::size_t first = 0; first < queue.size(); first += batch_size) {
     const std::vector<std::uint32_t> batch(queue.begin() + static_cast<std::ptrdiff_t>(first),
                                            queue.begin() + static_cast<std::ptrdiff_t>(std::min(queue.size(), first + batch_size)));

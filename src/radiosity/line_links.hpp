@@ -77,6 +77,9 @@ struct LineLinks {
   std::size_t bytes() const;
 };
 
+/// Directions whose lines are held at a time: fewer the more fragments each has.
+double line_batch(std::size_t elements, const RadiosityDensity& density);
+
 /// Traces lines and makes links. The refinement oracle takes, for the ends of each line, the largest pair of clusters A, B with
 ///     albedo x (diameter_A + diameter_B) / distance <= density.link_error,
 /// an estimate of how much the radiosity met, relative to the mean, changes when A sees B from elsewhere within A: the light of dark

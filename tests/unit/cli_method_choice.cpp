@@ -18,13 +18,13 @@ TEST_CASE("the command line comes before the scene, the scene before the default
   CHECK(choose_method("direct", "draft", {}, scene).quality == Quality::draft);
 }
 
-TEST_CASE("a wanted error picks the cheapest quality that keeps it", "[cli]") {
+TEST_CASE("a wanted error picks the cheapest quality that aims at it", "[cli]") {
   CHECK(choose_method({}, {}, 0.10, {}).quality == Quality::draft);
   CHECK(choose_method({}, {}, 0.02, {}).quality == Quality::standard);
   CHECK(choose_method({}, {}, 0.015, {}).quality == Quality::fine);
   CHECK(choose_method({}, "fine", 0.10, {}).quality == Quality::fine);
   CHECK_THROWS_WITH(choose_method({}, {}, 0.001, {}),
-                    "--error: found 0.001; expected at least 0.012, what 'fine' keeps (for less: --method reference)");
+                    "--error: found 0.001; expected at least 0.012, what 'fine' aims at (for less: --method reference)");
 }
 
 TEST_CASE("an unknown method names those there are", "[cli]") {

@@ -37,7 +37,7 @@ const PlanItem& item(const Plan& plan, const std::string& name) {
 }  // namespace
 
 TEST_CASE("what a scene does not have is left out, with the reason", "[cli][plan]") {
-  const Plan plan = make_plan(one_triangle(), {"clustering", Quality::standard});
+  const Plan plan = make_plan(one_triangle(), {"clustering", Quality::standard}, silent());
   for (const char* name : {"states", "sun disc", "sky", "periodicity", "ground", "copies", "scattering", "transmission"}) {
     INFO(name);
     CHECK_FALSE(item(plan, name).done);
@@ -56,7 +56,7 @@ TEST_CASE("what a scene has is planned", "[cli][plan]") {
   scene.states[1].sky = Sky{};
   scene.periodic = PeriodicCell{0, 0, 2, 1};
   scene.plants[0].placements.push_back({Affine::translate({1, 0, 0})});
-  const Plan plan = make_plan(scene, {"clustering", Quality::standard});
+  const Plan plan = make_plan(scene, {"clustering", Quality::standard}, silent());
   for (const char* name : {"states", "sun disc", "sky", "periodicity", "copies", "scattering", "transmission"}) {
     INFO(name);
     CHECK(item(plan, name).done);
@@ -69,7 +69,7 @@ TEST_CASE("what a scene has is planned", "[cli][plan]") {
 TEST_CASE("a method leaves out what it does not do", "[cli][plan]") {
   Scene scene = one_triangle();
   scene.optics[0].transmittance[0] = 0.1f;
-  CHECK(item(make_plan(scene, {"direct", Quality::standard}), "scattering").why == "method 'direct' stops at the light that arrives first");
-  CHECK_FALSE(item(make_plan(scene, {"direct", Quality::standard}), "transmission").done);
-  CHECK_FALSE(item(make_plan(scene, {"reference", Quality::standard}), "certificate").done);
+  CHECK(item(make_plan(scene, {"direct", Quality::standard}, silent()), "scattering").why == "method 'direct' stops at the light that arrives first");
+  CHECK_FALSE(item(make_plan(scene, {"direct", Quality::standard}, silent()), "transmission").done);
+  CHECK_FALSE(item(make_plan(scene, {"reference", Quality::standard}, silent()), "certificate").done);
 }

@@ -1,0 +1,128 @@
+#include <sunfleck/radiosity/plan.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "cluster_tree.hpp"
+#include "direct_light.hpp"
+#include "elements.hpp"
+#include "line_links.hpp"
+
+namespace sunfleck {
+
+namespace {
+
+/// Area of all cells, seen along a direction, or averaged over all directions [m^2].
+double projected_area(const Elements& e, const Vec3* direction) {
+  const auto& s = e.surface;
+  double sum = 0;
+  for (std::size_t t = 0; t < s.size(); ++t) {
+    if (s.split[t] == 0) continue;
+    double cosine = 0.5;
+    if (direction) cosine = std::fabs(glm::dot(Vec3{s.normal[0][t], s.normal[1][t], s.normal[2][t]}, *direction));
+    sum += cosine * static_cast<double>(s.cell_area[t]) * (s.first_cell[t + 1] - s.first_cell[t]);
+  }
+  return sum;
+}
+
+std::uint64_t whole(double x) { return static_cast<std::uint64_t>(std::llround(x)); }
+
+/// What few directions show of the links.
+struct Pilot {
+  double fragments = 0, near_pairs = 0, near = 0, far = 0;
+};
+
+class Planner {
+ public:
+  Planner(const Scene& scene, const FacetScene& facets, const RadiositySettings& settings, Progress& progress)
+      : scene_(scene),
+        facets_(facets),
+        settings_(settings),
+        progress_(progress),
+        columns_(scene.states.size() * facets.bands),
+        elements_(make_elements(scene, facets, settings)) {}
+
+  RadiosityPlan run() {
+    plan_.elements = elements_.size();
+    plan_.cells = elements_.surface.cells();
+    plan_.memory.emplace_back("elements", elements_.bytes());
+    direct();
+    if (settings_.method != RadiosityMethod::direct) scattering();
+    return std::move(plan_);
+  }
+
+ private:
+  static constexpr std::uint64_t word = sizeof(float);
+
+  void direct() {
+    const auto sources = light_sources(scene_);
+    const auto& density = settings_.density;
+    const std::uint64_t sides = 2 * plan_.cells;
+    std::uint64_t values = 0;
+    if (!sources.skies.empty()) {
+      plan_.sky_fragments = whole(projected_area(elements_, nullptr) * density.sky_directions * 2.0 * density.sky_lines_per_organ / elements_.organ_area);
+      values += (sources.skies.size() + 1) * sides;
+    }
+    for (const auto* sun : sources.suns) {
+      plan_.sun_fragments += whole(projected_area(elements_, &sun->direction) * 2.0 * density.sun_lines_per_organ / elements_.organ_area);
+      values += sides + elements_.surface.size();
+    }
+    sun_ = !sources.suns.empty();
+    plan_.memory.emplace_back("direct", values * word);
+  }
+
+  Pilot pilot(const ClusterTree* tree, std::uint32_t directions) const {
+    RadiositySettings settings = settings_;
+    settings.density.directions = directions;
+    settings.method = RadiosityMethod::flat;  // no search for enclosed parts
+    const auto links = line_links(elements_, tree, {}, settings, progress_);
+    Pilot out{.fragments = static_cast<double>(links.fragments)};
+    for (const auto& half : links.half) {
+      out.near += static_cast<double>(half.near.column.size());
+      out.far += static_cast<double>(half.far.links.size());
+      for (const float count : half.near.count) out.near_pairs += 0.5 * static_cast<double>(count);
+    }
+    return out;
+  }
+
+  void scattering() {
+    std::optional<ClusterTree> tree;
+    if (settings_.method == RadiosityMethod::clustering) tree = make_cluster_tree(facets_, elements_);
+    plan_.clusters = tree ? tree->size() : 0;
+    const Pilot few = pilot(tree ? &*tree : nullptr, 8), more = pilot(tree ? &*tree : nullptr, 16);
+    const double directions = settings_.density.directions, times = directions / 16.0;
+    const double exponent = few.near > 0 ? std::clamp(std::log2(more.near / few.near), 0.0, 1.0) : 1.0;
+    plan_.line_fragments = whole(more.fragments * times);
+    const double near = more.near * std::pow(times, exponent), far = more.far * times;
+    plan_.links = whole(near + far);
+
+    const std::uint64_t sides = 2 * plan_.elements, slots = plan_.clusters * channels;
+    // of each half: starts of the rows of near links, lines and how many of them are open; far lines of sides and nodes; the sun's first reflection
+    const std::uint64_t half = 4 * sides * word + (tree ? sides * channels + 2 * slots * word + plan_.clusters * word : 0) + (sun_ ? sides * columns_ * word : 0);
+    plan_.memory.emplace_back("links", 2 * half + whole(near * (sizeof(std::uint32_t) + sizeof(std::uint16_t)) + far * sizeof(FarField::Link)) + plan_.elements * word + (tree ? tree->bytes() : 0));
+    plan_.memory.emplace_back("fields", 14 * 2 * sides * columns_ * word + 2 * (2 * sides + (tree ? slots * (1 + 2 * columns_) : 0)) * word);
+    // a pair of sides waits in 8 bytes, and in 12 while its half is sorted; all that a batch of directions meets is kept in full
+    constexpr double bytes_of_pair = 12.0, bytes_of_meeting = 32.0;
+    const double in_batch = std::min(directions, line_batch(plan_.elements, settings_.density)) / directions;
+    plan_.memory.emplace_back("lines", whole(more.near_pairs * times * bytes_of_pair + more.fragments * times * in_batch * bytes_of_meeting) +
+                                           (sun_ ? 2 * plan_.cells * columns_ * word : 0));
+  }
+
+  const Scene& scene_;
+  const FacetScene& facets_;
+  const RadiositySettings& settings_;
+  Progress& progress_;
+  const std::size_t columns_;
+  const Elements elements_;
+  bool sun_ = false;
+  RadiosityPlan plan_;
+};
+
+}  // namespace
+
+RadiosityPlan plan_radiosity(const Scene& scene, const FacetScene& facets, const RadiositySettings& settings, Progress& progress) {
+  return Planner(scene, facets, settings, progress).run();
+}
+
+}  // namespace sunfleck
