@@ -18,7 +18,7 @@ std::vector<bool> interior_sides(const Elements& e, double pitch, std::uint64_t 
   const double reach = std::sqrt(e.organ_area);
   std::uint32_t organs = 0;
   for (const auto o : e.organ_of_row) organs = std::max(organs, o + 1);
-  std::vector<std::atomic<std::uint32_t>> all(2 * organs), inside(2 * organs);
+  std::vector<std::atomic<std::uint32_t>> all(2 * organs), inside(2 * organs), own(2 * organs);
   tbb::parallel_for(std::uint32_t{0}, directions, [&](std::uint32_t d) {
     if (progress.cancelled()) return;
     thread_local LineBundle bundle;
@@ -34,6 +34,7 @@ std::vector<bool> interior_sides(const Elements& e, double pitch, std::uint64_t 
         const auto low = organ_side(bundle.side[k - 1]), high = organ_side(bundle.side[k] ^ 1u);
         all[low].fetch_add(1, std::memory_order_relaxed);
         all[high].fetch_add(1, std::memory_order_relaxed);
+        if (low == high) own[low].fetch_add(2, std::memory_order_relaxed);
         if (low == high || (bundle.depth[k] - bundle.depth[k - 1]) * bundle.depth_to_length < reach) {
           inside[low].fetch_add(1, std::memory_order_relaxed);
           inside[high].fetch_add(1, std::memory_order_relaxed);
@@ -43,8 +44,9 @@ std::vector<bool> interior_sides(const Elements& e, double pitch, std::uint64_t 
   });
   progress.check();
   std::vector<bool> interior(2 * organs, false);
-  const auto share = [&](std::size_t i) { return all[i] > 0 ? static_cast<double>(inside[i]) / all[i] : 0.0; };
-  for (std::size_t i = 0; i < interior.size(); ++i) interior[i] = share(i) >= 0.85 && share(i ^ 1) < 0.7;
+  const auto share = [&](const auto& lines, std::size_t i) { return all[i] > 0 ? static_cast<double>(lines[i]) / all[i] : 0.0; };
+  // the second rule spares leaves that lie low over the ground or on one another
+  for (std::size_t i = 0; i < interior.size(); ++i) interior[i] = share(inside, i) >= 0.85 && share(own, i) >= 0.3 && share(inside, i ^ 1) < 0.7;
   if (std::find(interior.begin(), interior.end(), true) == interior.end()) return {};
   return interior;
 }

@@ -90,7 +90,7 @@ class RadiositySolver {
           area += a;
           hidden += a * enclosed(c);
           for (std::size_t side = 0; side < 2; ++side) {
-            rest_of[side] += a * std::max(0.0f, rest(2 * c + side) - enclosed(c));
+            rest_of[side] += a * (rest(2 * c + side) - enclosed(c));
             for (std::size_t column = 0; column < columns_; ++column)
               sum[side * columns_ + column] += a * sky_irradiance(2 * c + side, column / bands_, column % bands_);
           }
@@ -149,6 +149,8 @@ class RadiositySolver {
     const LineLinks links = line_links(elements_, tree ? &*tree : nullptr, sun_reflection(), settings_, progress_);
     enclosed_part_ = links.enclosed_part;
     enclosed_ = links.enclosed;
+    // what sees the sky is not enclosed: other lines found the two fractions, and together they must not exceed the hemisphere
+    for (std::size_t c = 0; c < enclosed_.size(); ++c) enclosed_[c] = std::min({enclosed_[c], rest(2 * c), rest(2 * c + 1)});
     part_sources(links);
     timed("lines", watch);
     const std::size_t sides = links.sides();
@@ -274,7 +276,7 @@ class RadiositySolver {
 
   float scattered_irradiance(std::uint32_t cell, std::size_t side, std::size_t column) const {
     const auto element = elements_.element_of_cell[cell];
-    const float open = rest(2 * cell + side), inside = std::min(enclosed(cell), open), seen = gathered_[(2 * element + side) * columns_ + column];
+    const float open = rest(2 * cell + side), inside = enclosed(cell), seen = gathered_[(2 * element + side) * columns_ + column];
     if (inside == 0.0f) return open * seen;
     const float seen_inside = gathered_[(2 * enclosed_part_[element] + side) * columns_ + column];
     return (open - inside) * seen + inside * seen_inside;

@@ -204,6 +204,25 @@ TEST_CASE("radiosity: 24 lighting states in one run and in runs of their own") {
   }
 }
 
+TEST_CASE("radiosity: one plant in a small cell and nine in a cell three times as wide") {
+  auto small = scene_with({"PAR", "NIR"}, {{"leaf", {0.07f, 0.42f}, {0.12f, 0.46f}, {0.04f, 0.40f}}});
+  small.periodic = PeriodicCell{0, 0, 0.6, 0.6};  // narrower than the plant: images overlap
+  small.ground = flat_ground({0.6, 0.6}, {0.3, 0.3}, {2, 2}, {0.12, 0.2});
+  sky(small, SkyModel::standard_overcast, 100);
+  point_sun(small, {0.5, 0.2, 0.7}, 400);
+  add(small, "plant", leaves(40, 0.25, {0.9, 0.9, 0.8}, 5), 0);
+  auto large = small;
+  large.periodic = PeriodicCell{0, 0, 1.8, 1.8};
+  large.ground = flat_ground({1.8, 1.8}, {0.9, 0.9}, {6, 6}, {0.12, 0.2});
+  large.plants[0].placements.clear();
+  for (int i = 0; i < 9; ++i) large.plants[0].placements.push_back(placed({.position = {0.6 * (i / 3), 0.6 * (i % 3), 0}}));
+  for (const auto method : both_methods) {
+    const auto one = sample(small, method, 1), nine = sample(large, method, 1001, Quality::draft, 9);
+    CAPTURE(name_of(method));
+    CHECK(chi_square(one, nine) < only_sampling);
+  }
+}
+
 TEST_CASE("radiosity: source and receiver swapped") {
   // Two plates face each other through grey leaves that they hide from the sun. State 0: the sun shines on plate 0's outside and its
   // inside emits what comes through; state 1: on plate 1's. Reciprocity: A_1 E_1 per emission of 0 = A_0 E_0 per emission of 1. Plate 0
