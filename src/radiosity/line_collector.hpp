@@ -51,6 +51,8 @@ class LineCollector {
   /// `interior` from interior_sides(), or empty: nothing is enclosed.
   LineCollector(const Elements& elements, const ClusterTree* tree, double link_error, std::vector<bool> interior, bool sun);
   void collect(const LineBundle& bundle, DirectionLines& out);
+  /// From now on all links are near.
+  void forget_clusters() { tree_ = nullptr; }
   /// Fraction of each cell that is enclosed; empty if none is.
   std::vector<float> enclosed() const;
 

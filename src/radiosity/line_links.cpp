@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 #include <numeric>
+#include <optional>
 
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
@@ -240,6 +241,16 @@ class HalfBuilder {
   std::vector<std::uint32_t> by_node_, other_;
 };
 
+/// Do at least 5 % of the lines between elements run far?
+bool clusters_pay(const std::vector<DirectionLines>& found) {
+  std::size_t near = 0, far = 0;
+  for (const auto& f : found) {
+    near += f.near.size();
+    far += f.far.size();
+  }
+  return 20 * far >= near + far;
+}
+
 std::size_t bytes_of_half(const HalfLinks& h) {
   return bytes_of(h.near.start) + bytes_of(h.near.column) + bytes_of(h.near.count) + bytes_of(h.far.of_side) + bytes_of(h.far.through) + bytes_of(h.far.linked) +
          bytes_of(h.far.first_link) + bytes_of(h.far.links) + bytes_of(h.lines) + bytes_of(h.open_up) + bytes_of(h.open_down) + bytes_of(h.first_reflection);
@@ -279,7 +290,7 @@ LineLinks line_links(const Elements& e, const ClusterTree* tree, const SunReflec
   std::vector<bool> interior;
   if (settings.method != RadiosityMethod::flat) interior = interior_sides(e, pitch, settings.seed, progress);
   LineCollector collector(e, tree, settings.density.link_error, std::move(interior), !sun.exitance.empty());
-  HalfBuilder builder[2] = {{e, tree, sun}, {e, tree, sun}};
+  std::optional<HalfBuilder> builder[2];
   // bin by bin, so that equal far links meet and are merged early
   std::vector<Vec3> direction(directions);
   std::vector<std::vector<std::uint32_t>> bins(direction_bins);
@@ -310,6 +321,19 @@ LineLinks line_links(const Elements& e, const ClusterTree* tree, const SunReflec
     progress.check();
     // a side of area A meets A D / (2 line area) lines
     for (const double a : line_area) links.area_of_line += 2.0 * a / (static_cast<double>(directions) * directions);
+    if (first == 0) {
+      // where hardly a line of the first batch runs far, clusters cost more than they save
+      if (tree && !clusters_pay(found)) {
+        tree = nullptr;
+        collector.forget_clusters();
+        for (auto& f : found) {
+          for (const auto& p : f.far) f.near.push_back({p.low, p.high});
+          f.far.clear();
+        }
+      }
+      links.clustered = tree != nullptr;
+      for (auto& b : builder) b.emplace(e, tree, sun);
+    }
     for (const auto& f : found) links.fragments += f.near.size() + f.far.size() + f.open_up.size();
     const auto add = [&](std::uint32_t h) {
       for (std::size_t i = 0; i < batch.size();) {
@@ -317,7 +341,7 @@ LineLinks line_links(const Elements& e, const ClusterTree* tree, const SunReflec
         std::vector<DirectionLines*> mine;
         for (; i < batch.size() && bin_of(direction[batch[i]]) == bin; ++i)
           if (batch[i] % 2 == h) mine.push_back(&found[i]);
-        builder[h].add_bin(bin, mine);
+        builder[h]->add_bin(bin, mine);
       }
     };
     tbb::parallel_invoke([&] { add(0); }, [&] { add(1); });
@@ -336,7 +360,7 @@ LineLinks line_links(const Elements& e, const ClusterTree* tree, const SunReflec
       links.whole.push_back(e.element_of_cell[c]);
     }
   }
-  for (std::size_t h = 0; h < 2; ++h) links.half[h] = builder[h].finish(links.sides(), links.enclosed_part);
+  for (std::size_t h = 0; h < 2; ++h) links.half[h] = builder[h]->finish(links.sides(), links.enclosed_part);
   return links;
 }
 

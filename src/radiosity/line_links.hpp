@@ -68,6 +68,7 @@ struct LineLinks {
   std::vector<std::uint32_t> whole;          ///< [parts] the element that a part belongs to; part i < elements belongs to element i
   std::vector<std::uint32_t> enclosed_part;  ///< [elements] its enclosed part, or none; empty where no element has one
   std::vector<float> enclosed;               ///< [cells] fraction of a cell that is enclosed; empty where no element has an enclosed part
+  bool clustered = false;                    ///< some links run between clusters
   std::uint64_t fragments = 0;
   double area_of_line = 0;                   ///< one-sided area that a line of both halves together stands for: sum of lines x this = area [m^2]
   static constexpr std::uint32_t none = 0xffffffffu;
@@ -84,7 +85,7 @@ double line_batch(std::size_t elements, const RadiosityDensity& density);
 ///     albedo x (diameter_A + diameter_B) / distance <= density.link_error,
 /// an estimate of how much the radiosity met, relative to the mean, changes when A sees B from elsewhere within A: the light of dark
 /// things is scattered little, and a look from far spreads over what lies around anyway. No such pair: a link between the elements.
-/// Method flat has no clusters.
+/// Method flat has no clusters; a scene in which hardly a line runs far makes no use of them.
 LineLinks line_links(const Elements& elements, const ClusterTree* tree, const SunReflection& sun, const RadiositySettings& settings, Progress& progress);
 
 }  // namespace sunfleck

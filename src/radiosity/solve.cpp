@@ -147,6 +147,7 @@ class RadiositySolver {
     std::optional<ClusterTree> tree;
     if (settings_.method == RadiosityMethod::clustering) tree = make_cluster_tree(facets_, elements_);
     const LineLinks links = line_links(elements_, tree ? &*tree : nullptr, sun_reflection(), settings_, progress_);
+    if (!links.clustered) tree.reset();
     enclosed_part_ = links.enclosed_part;
     enclosed_ = links.enclosed;
     // what sees the sky is not enclosed: other lines found the two fractions, and together they must not exceed the hemisphere
