@@ -9,8 +9,11 @@
 
 namespace sunfleck {
 
-/// Clusters between which far links run have at least this many organs, but where the tree has no smaller node.
-inline constexpr std::uint32_t organs_per_cluster = 12;
+/// Nodes of at most this many organs are the leaf clusters between which far links run: small enough to be far from others early, large
+/// enough that their channels cost less than the links they replace.
+inline constexpr std::uint32_t organs_per_cluster = 32;
+/// Within nodes of at most this many organs, small organs of one material share elements.
+inline constexpr std::uint32_t organs_sharing_elements = 12;
 
 /// A node of the cluster tree: a run of organs in tree order. Children come after their parent; leaves hold one organ.
 struct ClusterNode {

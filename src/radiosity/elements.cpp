@@ -32,7 +32,7 @@ std::vector<std::uint32_t> gather_materials(const ClusterOrder& tree, const std:
   while (!stack.empty()) {
     const auto& node = tree.nodes[stack.back()];
     stack.pop_back();
-    if (node.organ_count <= organs_per_cluster)
+    if (node.organ_count <= organs_sharing_elements)
       std::stable_sort(organs.begin() + node.first_organ, organs.begin() + node.first_organ + node.organ_count,
                        [&](std::uint32_t a, std::uint32_t b) { return material_of_organ[a] < material_of_organ[b]; });
     else

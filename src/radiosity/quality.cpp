@@ -10,7 +10,7 @@ RadiosityDensity density_of(Quality quality) {
            .sun_lines_per_organ = 800.0, .link_error = 0.8, .tolerance = 1e-5};
       break;
     case Quality::standard:
-      d = {.directions = 144, .lines_per_element = 2.0, .elements_per_organ = 6.0, .sky_directions = 160, .sky_lines_per_organ = 8.0, .sun_samples = 4,
+      d = {.directions = 160, .lines_per_element = 2.0, .elements_per_organ = 6.0, .sky_directions = 160, .sky_lines_per_organ = 8.0, .sun_samples = 4,
            .sun_lines_per_organ = 3000.0, .link_error = 0.5, .tolerance = 2e-6};
       break;
     case Quality::fine:

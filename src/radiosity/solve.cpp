@@ -167,6 +167,7 @@ class RadiositySolver {
     bool sky_below = false;
     for (const auto& state : scene_.states) sky_below = sky_below || (state.sky && state.sky->reaches_below_horizon());
     std::vector<Gather> gather;
+    ClusterFields cluster_fields;
     std::vector<float> escape[2];  // the part of each side's radiosity that goes to the sky and below the horizon
     for (std::size_t h = 0; h < 2; ++h) {
       const auto& half = links.half[h];
@@ -177,7 +178,7 @@ class RadiositySolver {
         const float left = half.lines[i] - sky_lines[i], open = half.open_up[i] + half.open_down[i] - sky_lines[i];
         escape[h][i] = 1.0f - part_rest_[i] + (left > 0.0f ? part_rest_[i] * open / left : 0.0f);
       }
-      gather.emplace_back(half, tree ? &*tree : nullptr, sky_lines, columns_);
+      gather.emplace_back(half, tree ? &*tree : nullptr, sky_lines, columns_, cluster_fields);
     }
     std::vector<std::uint32_t> material(links.whole.size());
     for (std::size_t i = 0; i < material.size(); ++i) material[i] = elements_.material[links.whole[i]];
@@ -232,7 +233,7 @@ class RadiositySolver {
     for (std::size_t h = 0; h < 2; ++h)
       for (std::size_t c = 0; c < links.half[h].escaped_reflection.size(); ++c)
         report_.balance[c / bands_][c % bands_].escaped += links.half[h].escaped_reflection[c] * links.area_of_line;
-    report_.memory.emplace_back("fields", 14 * bytes_of(irradiance) + gather[0].bytes() + gather[1].bytes());
+    report_.memory.emplace_back("fields", 14 * bytes_of(irradiance) + gather[0].bytes() + gather[1].bytes() + bytes_of(cluster_fields.sent) + bytes_of(cluster_fields.received));
     timed("iteration", watch);
     progress_.line(fmt::format("{} applications of the operator, residual {:.1e}", result.residuals.size(), result.residuals.back()));
   }

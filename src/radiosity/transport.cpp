@@ -32,8 +32,8 @@ void Reflection::apply(const float* irradiance, float* radiosity) const {
   });
 }
 
-Gather::Gather(const HalfLinks& half, const ClusterTree* tree, const std::vector<float>& sky_lines, std::size_t columns)
-    : half_(half), tree_(tree), columns_(columns), inverse_(half.lines.size()), donor_(half.lines.size()) {
+Gather::Gather(const HalfLinks& half, const ClusterTree* tree, const std::vector<float>& sky_lines, std::size_t columns, ClusterFields& fields)
+    : half_(half), tree_(tree), columns_(columns), inverse_(half.lines.size()), donor_(half.lines.size()), fields_(fields) {
   const auto known = [&](std::size_t i) { return half_.lines[i] - sky_lines[i] > 0.5f; };
   for (std::size_t i = 0; i < inverse_.size(); ++i) {
     std::size_t donor = i;
@@ -45,11 +45,11 @@ Gather::Gather(const HalfLinks& half, const ClusterTree* tree, const std::vector
   if (!tree_) return;
   inverse_through_.resize(half_.far.through.size());
   for (std::size_t i = 0; i < inverse_through_.size(); ++i) inverse_through_[i] = half_.far.through[i] > 0 ? 1.0f / static_cast<float>(half_.far.through[i]) : 0.0f;
-  sent_.resize(inverse_through_.size() * columns_);
-  received_.resize(sent_.size());
+  fields_.sent.resize(inverse_through_.size() * columns_);
+  fields_.received.resize(fields_.sent.size());
 }
 
-std::size_t Gather::bytes() const { return bytes_of(inverse_) + bytes_of(donor_) + bytes_of(inverse_through_) + bytes_of(sent_) + bytes_of(received_); }
+std::size_t Gather::bytes() const { return bytes_of(inverse_) + bytes_of(donor_) + bytes_of(inverse_through_); }
 
 namespace {
 
@@ -94,7 +94,7 @@ void Gather::gather(const float* b, float* s) const {
     for (std::size_t i = range.begin(); i < range.end(); ++i) {
       float* to = s + i * n;
       if (i < element_sides) {
-        const float* field = received_.data() + std::size_t{tree_->cluster_of_element[i >> 1]} * channels * n;
+        const float* field = fields_.received.data() + std::size_t{tree_->cluster_of_element[i >> 1]} * channels * n;
         const std::uint8_t* lines = half_.far.of_side.data() + i * channels;
         for (std::uint32_t q = 0; q < channels; ++q) {
           if (lines[q] == 0) continue;
@@ -125,7 +125,7 @@ void Gather::far_up(const float* b) const {
   const std::size_t n = columns_, row = channels * n;
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, t.size(), 16), [&](const auto& range) {
     for (std::size_t node = range.begin(); node < range.end(); ++node) {
-      float* sum = sent_.data() + node * row;
+      float* sum = fields_.sent.data() + node * row;
       std::fill(sum, sum + row, 0.0f);
       for (std::uint32_t k = t.first_element[node]; k < t.first_element[node + 1]; ++k)
         for (std::size_t side = 2 * std::size_t{t.elements[k]}, end = side + 2; side < end; ++side) {
@@ -141,9 +141,9 @@ void Gather::far_up(const float* b) const {
   // deepest level first: sums become means, and what is not linked at a node goes on to its parent
   for (std::size_t level = t.levels.size(); level-- > 0;) {
     for (const auto node : t.levels[level]) {
-      float* mean = sent_.data() + node * row;
+      float* mean = fields_.sent.data() + node * row;
       const auto up = t.parent[node];
-      float* parent_sum = up == ClusterTree::none ? nullptr : sent_.data() + up * row;
+      float* parent_sum = up == ClusterTree::none ? nullptr : fields_.sent.data() + up * row;
       for (std::uint32_t q = 0; q < channels; ++q) {
         const std::size_t slot = node * channels + q;
         if (far.through[slot] == 0) continue;
@@ -162,11 +162,11 @@ void Gather::far_across() const {
   const std::size_t n = columns_, row = channels * n;
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, tree_->size(), 16), [&](const auto& range) {
     for (std::size_t node = range.begin(); node < range.end(); ++node) {
-      float* sum = received_.data() + node * row;
+      float* sum = fields_.received.data() + node * row;
       std::fill(sum, sum + row, 0.0f);
       for (std::uint32_t k = far.first_link[node]; k < far.first_link[node + 1]; ++k) {
         const auto& link = far.links[k];
-        const float* from = sent_.data() + std::size_t{link.source} * n;
+        const float* from = fields_.sent.data() + std::size_t{link.source} * n;
         float* to = sum + link.channel * n;
         const auto count = static_cast<float>(link.count);
         for (std::size_t c = 0; c < n; ++c) to[c] += count * from[c];
@@ -183,9 +183,9 @@ void Gather::far_down() const {
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, level.size(), 64), [&](const auto& range) {
       for (std::size_t k = range.begin(); k < range.end(); ++k) {
         const auto node = level[k];
-        float* mean = received_.data() + node * row;
+        float* mean = fields_.received.data() + node * row;
         const auto up = t.parent[node];
-        const float* parent_mean = up == ClusterTree::none ? nullptr : received_.data() + up * row;
+        const float* parent_mean = up == ClusterTree::none ? nullptr : fields_.received.data() + up * row;
         for (std::uint32_t q = 0; q < channels; ++q) {
           const std::size_t slot = node * channels + q;
           if (far.through[slot] == 0) continue;

@@ -28,13 +28,19 @@ class Reflection {
   std::vector<float> front_, back_, through_;  ///< [materials][columns]
 };
 
+/// Mean radiosity that each node sends and receives along each channel: [nodes][channels][columns].
+struct ClusterFields {
+  Field sent, received;
+};
+
 /// Gathers radiosity over what is not open sky, with one half of the lines: S_i = sum_j count_ij B_j / (lines_i - sky lines_i), far
 /// light by way of the clusters: up the tree (means of what elements send along each channel), across far links, down the tree.
 class Gather {
  public:
   /// `sky_lines[i]`: lines of side i that end at a sky whose light is known from elsewhere, and are left out of the mean. Sides that no
   /// line of this half meets (but in the sky) take over the row of a neighbour.
-  Gather(const HalfLinks& half, const ClusterTree* tree, const std::vector<float>& sky_lines, std::size_t columns);
+  /// `fields` is scratch space that both halves may share.
+  Gather(const HalfLinks& half, const ClusterTree* tree, const std::vector<float>& sky_lines, std::size_t columns, ClusterFields& fields);
   void gather(const float* radiosity, float* gathered) const;
   /// Adds factor x the sun's light after its first reflection, gathered along the same lines.
   void add_first_reflection(float factor, float* gathered) const;
@@ -51,7 +57,7 @@ class Gather {
   std::vector<float> inverse_;               ///< [sides] 1 / (lines - sky lines); 0 where nothing but sky is seen
   std::vector<std::uint32_t> donor_;         ///< [sides] the row that serves a side
   std::vector<float> inverse_through_;       ///< [nodes][channels]
-  mutable Field sent_, received_;            ///< [nodes][channels][columns] mean radiosity along each channel
+  ClusterFields& fields_;
 };
 
 }  // namespace sunfleck
