@@ -31,6 +31,7 @@ std::uint64_t whole(double x) { return static_cast<std::uint64_t>(std::llround(x
 /// What few directions show of the links.
 struct Pilot {
   double fragments = 0, near_pairs = 0, near = 0, far = 0;
+  bool clustered = false;
 };
 
 class Planner {
@@ -77,7 +78,9 @@ class Planner {
     settings.density.directions = directions;
     settings.method = RadiosityMethod::flat;  // no search for enclosed parts
     const auto links = line_links(elements_, tree, {}, settings, progress_);
-    Pilot out{.fragments = static_cast<double>(links.fragments)};
+    Pilot out;
+    out.fragments = static_cast<double>(links.fragments);
+    out.clustered = links.clustered;
     for (const auto& half : links.half) {
       out.near += static_cast<double>(half.near.column.size());
       out.far += static_cast<double>(half.far.links.size());
@@ -89,8 +92,9 @@ class Planner {
   void scattering() {
     std::optional<ClusterTree> tree;
     if (settings_.method == RadiosityMethod::clustering) tree = make_cluster_tree(facets_, elements_);
-    plan_.clusters = tree ? tree->size() : 0;
     const Pilot few = pilot(tree ? &*tree : nullptr, 8), more = pilot(tree ? &*tree : nullptr, 16);
+    if (tree && !more.clustered) tree.reset();
+    plan_.clusters = tree ? tree->size() : 0;
     const double directions = settings_.density.directions, times = directions / 16.0;
     const double exponent = few.near > 0 ? std::clamp(std::log2(more.near / few.near), 0.0, 1.0) : 1.0;
     plan_.line_fragments = whole(more.fragments * times);

