@@ -105,7 +105,7 @@ class Planner {
     // of each half: starts of the rows of near links, lines and how many of them are open; far lines of sides and nodes; the sun's first reflection
     const std::uint64_t half = 4 * sides * word + (tree ? sides * channels + 2 * slots * word + plan_.clusters * word : 0) + (sun_ ? sides * columns_ * word : 0);
     plan_.memory.emplace_back("links", 2 * half + whole(near * (sizeof(std::uint32_t) + sizeof(std::uint16_t)) + far * sizeof(FarField::Link)) + plan_.elements * word + (tree ? tree->bytes() : 0));
-    plan_.memory.emplace_back("fields", 14 * 2 * sides * columns_ * word + 2 * (2 * sides + (tree ? slots * (1 + 2 * columns_) : 0)) * word);
+    plan_.memory.emplace_back("fields", 14 * 2 * sides * columns_ * word + (4 * sides + (tree ? 2 * slots * (1 + columns_) : 0)) * word);
     // a pair of sides waits in 8 bytes, and in 12 while its half is sorted; all that a batch of directions meets is kept in full
     constexpr double bytes_of_pair = 12.0, bytes_of_meeting = 32.0;
     const double in_batch = std::min(directions, line_batch(plan_.elements, settings_.density)) / directions;

@@ -206,8 +206,9 @@ struct Absorbed {
 Absorbed solve(const Problem& p, const std::array<HalfLinks, 2>& half) {
   const auto& e = p.elements;
   const std::size_t bands = p.facets.bands, sides = 2 * e.size(), values = sides * bands;
+  ClusterFields unused;  // there are no clusters
   std::vector<Gather> gather;
-  for (const auto& h : half) gather.emplace_back(h, nullptr, p.direct.sky_seen.empty() ? std::vector<float>(sides, 0.0f) : h.open_up, bands);
+  for (const auto& h : half) gather.emplace_back(h, nullptr, p.direct.sky_seen.empty() ? std::vector<float>(sides, 0.0f) : h.open_up, bands, unused);
   const Reflection reflection(p.facets, e.material, 1);
   Field b(values), source = p.source;
   source.insert(source.end(), p.source.begin(), p.source.end());
