@@ -1,3 +1,5 @@
 #include <sunfleck/cli/program.hpp>
 
-int main(int argc, char** argv) { return sunfleck::run_program(argc, argv); }
+int main(int argc, char** argv) {
+  return sunfleck::run_program(argc, argv);
+}

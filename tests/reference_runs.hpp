@@ -39,7 +39,9 @@ class Kept : public IrradianceSink {
   double on(std::size_t facet, int side, std::size_t band = 0, std::size_t state = 0) const {
     return irradiance[((state * n_ + facet) * 2 + static_cast<std::size_t>(side)) * bands_ + band];
   }
-  double variance_of(std::size_t facet, std::size_t band = 0, std::size_t state = 0) const { return variance[(state * n_ + facet) * bands_ + band]; }
+  double variance_of(std::size_t facet, std::size_t band = 0, std::size_t state = 0) const {
+    return variance[(state * n_ + facet) * bands_ + band];
+  }
 
   std::vector<float> irradiance, sunlit, variance;
   bool in_order = true;
@@ -58,7 +60,9 @@ struct Run {
     return (1.0 - m.reflectance_front[band] - m.transmittance[band]) * kept.on(facet, 0, band, state) +
            (1.0 - m.reflectance_back[band] - m.transmittance[band]) * kept.on(facet, 1, band, state);
   }
-  double standard_error(std::size_t facet, std::size_t band = 0, std::size_t state = 0) const { return std::sqrt(kept.variance_of(facet, band, state)); }
+  double standard_error(std::size_t facet, std::size_t band = 0, std::size_t state = 0) const {
+    return std::sqrt(kept.variance_of(facet, band, state));
+  }
 };
 
 inline Run trace(const Scene& scene, std::uint32_t samples, std::uint64_t seed = 1, int threads = 0) {

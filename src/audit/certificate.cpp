@@ -165,8 +165,8 @@ void estimate_band(std::size_t b, const FacetScene& facets, const OrganTotals& s
 
 }  // namespace
 
-Certificate certify(const Scene& scene, const FacetScene& facets, const OrganTotals& solved, const std::vector<std::vector<Balance>>& balance,
-                    const CertificateSettings& settings, Progress& progress) {
+Certificate certify(const Scene& scene, const FacetScene& facets, const OrganTotals& solved,
+                    const std::vector<std::vector<Balance>>& balance, const CertificateSettings& settings, Progress& progress) {
   Certificate out;
   out.seed = settings.seed;
   const std::uint64_t seed = mix(settings.seed, 0x6365727469667921ULL);  // not the numbers of the solve, nor of the reference method
@@ -184,7 +184,8 @@ Certificate certify(const Scene& scene, const FacetScene& facets, const OrganTot
     const std::size_t pilots = std::min<std::size_t>(16, targets.size());
     std::vector<std::uint64_t> cost(pilots);
     arena.execute([&] {
-      tbb::parallel_for(std::size_t{0}, pilots, [&](std::size_t p) { cost[p] = measure(sampler, targets[p * targets.size() / pilots], 1).rays; });
+      tbb::parallel_for(std::size_t{0}, pilots,
+                        [&](std::size_t p) { cost[p] = measure(sampler, targets[p * targets.size() / pilots], 1).rays; });
     });
     std::uint64_t pilot_rays = 0;
     for (const auto c : cost) pilot_rays += c;

@@ -38,8 +38,10 @@ Mean mean_of(std::span<const OrganError> organs, Value value, Noise noise) {
 }  // namespace
 
 ErrorEstimate estimate_error(std::span<const OrganError> organs) {
-  const Mean square = mean_of(organs, [](const auto& o) { return o.square; }, [](const auto& o) { return o.square_variance; });
-  const Mean bias = mean_of(organs, [](const auto& o) { return o.difference; }, [](const auto& o) { return o.difference_variance; });
+  const Mean square = mean_of(
+      organs, [](const auto& o) { return o.square; }, [](const auto& o) { return o.square_variance; });
+  const Mean bias = mean_of(
+      organs, [](const auto& o) { return o.difference; }, [](const auto& o) { return o.difference_variance; });
   constexpr double z = 2.1;
   const double q = std::max(0.0, square.value), step = z * std::sqrt(square.variance);
   const double log_normal = 0.5 * step * step / (q + step / z + 1e-300);

@@ -128,7 +128,8 @@ void add_certificate(const Scene& scene, const std::string& method, std::vector<
     items.push_back({"certificate", true, "some organs are checked by path tracing after the solve"});
 }
 
-/// Above this many facets the copies are not laid out for the sake of a plan: they would take as long, and most of the memory, of the solve.
+/// Above this many facets the copies are not laid out for the sake of a plan: they would take as long, and most of the memory, of the
+/// solve.
 constexpr std::uint64_t most_laid_out = 20'000'000;
 
 /// Elements, links and lines of the radiosity methods.

@@ -96,7 +96,8 @@ void add_solve(CLI::App& verb, SolveOptions& o) {
       ->type_name("N")
       ->check(count_from(0, 4096));
   verb.add_option("--seed", o.seed, "seed of all sampling (default 1)")->type_name("N")->check(count_from(0));
-  verb.add_flag_callback("--no-certificate", [&o] { o.certificate = false; }, "skip the check of the result against path tracing; the result then says so");
+  verb.add_flag_callback(
+      "--no-certificate", [&o] { o.certificate = false; }, "skip the check of the result against path tracing; the result then says so");
   verb.footer(
       "The table on standard output holds, per lighting state and band, incident and absorbed light [W, or umol/s where the scene says "
       "so],\n"
@@ -141,7 +142,8 @@ void add_export(CLI::App& verb, ExportOptions& o) {
                   "sunlit_front or sunlit_back")
       ->type_name("NAME");
   verb.add_option("--band", o.band, "mesh only: the band of that map (default PAR, else the first)")->type_name("NAME");
-  verb.add_option("--state", o.state, "mesh only: the one lighting state to keep, by name or number from 1 (default all, coloured by the first)")
+  verb.add_option("--state", o.state,
+                  "mesh only: the one lighting state to keep, by name or number from 1 (default all, coloured by the first)")
       ->type_name("NAME");
   verb.footer(
       "Units: irradiance and absorbed light of facets [W m^-2], absorbed light of organs [W], areas [m^2], lengths [m].\n\n"
@@ -153,10 +155,12 @@ void add_export(CLI::App& verb, ExportOptions& o) {
 void add_render(CLI::App& verb, RenderOptions& o) {
   verb.add_option("RESULT", o.result, "result of 'sunfleck solve', HDF5")->required()->type_name("");
   verb.add_option("-o,--output", o.output, "picture to write")->required()->type_name("IMAGE.png");
-  verb.add_option("--quantity", o.quantity, "what is drawn: 'colour' (natural colour, the default), or a map with a legend of one of " + joined(quantity_names()))
+  verb.add_option("--quantity", o.quantity,
+                  "what is drawn: 'colour' (natural colour, the default), or a map with a legend of one of " + joined(quantity_names()))
       ->type_name("NAME")
       ->check(one_of(quantity_names()));
-  verb.add_option("--band", o.band, "band of a map (default PAR, else the first), or the one band that natural colour is made from")->type_name("NAME");
+  verb.add_option("--band", o.band, "band of a map (default PAR, else the first), or the one band that natural colour is made from")
+      ->type_name("NAME");
   verb.add_option("--state", o.state, "lighting state, by name or by number from 1 (default the first)")->type_name("NAME");
   verb.add_option("--colormap", o.colormap, "colours of a map: " + joined(color_map_names()) + " (default viridis)")
       ->type_name("NAME")
@@ -188,8 +192,11 @@ void add_render(CLI::App& verb, RenderOptions& o) {
   verb.add_flag("--orthographic", o.orthographic, "parallel projection instead of perspective");
   verb.add_option("--width", o.width, "pixels (default 1200)")->type_name("N")->check(count_from(16, 16384));
   verb.add_option("--height", o.height, "pixels (default 900)")->type_name("N")->check(count_from(16, 16384));
-  verb.add_option("--samples", o.samples, "rays per pixel, rounded up to a square number (default 9)")->type_name("N")->check(count_from(1, 1024));
-  verb.add_flag_callback("--no-ground", [&o] { o.ground = false; }, "leave out the ground");
+  verb.add_option("--samples", o.samples, "rays per pixel, rounded up to a square number (default 9)")
+      ->type_name("N")
+      ->check(count_from(1, 1024));
+  verb.add_flag_callback(
+      "--no-ground", [&o] { o.ground = false; }, "leave out the ground");
   verb.add_flag("--map-ground", o.map_ground, "colour the ground of a map by its values too");
   verb.add_flag("--infinite", o.infinite, "draw a periodic scene with its repetition to the horizon");
   verb.footer(

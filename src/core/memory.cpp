@@ -19,7 +19,11 @@ std::size_t status_field(const char* field) {
 }
 }  // namespace
 
-std::size_t peak_resident_bytes() { return status_field("VmHWM"); }
-std::size_t resident_bytes() { return status_field("VmRSS"); }
+std::size_t peak_resident_bytes() {
+  return status_field("VmHWM");
+}
+std::size_t resident_bytes() {
+  return status_field("VmRSS");
+}
 
 }  // namespace sunfleck

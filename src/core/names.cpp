@@ -7,7 +7,9 @@
 namespace sunfleck {
 
 namespace {
-char lower(char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); }
+char lower(char c) {
+  return static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+}
 }  // namespace
 
 int edit_distance(std::string_view a, std::string_view b) {

@@ -28,7 +28,7 @@ struct Polynomial {
   unsigned degree, coefficients;
   std::array<std::uint32_t, 5> initial;
 };
-constexpr Polynomial polynomials[7] = {{1, 0, {1}},       {2, 1, {1, 3}},          {3, 1, {1, 3, 1}},      {3, 2, {1, 1, 1}},
+constexpr Polynomial polynomials[7] = {{1, 0, {1}},          {2, 1, {1, 3}},        {3, 1, {1, 3, 1}},       {3, 2, {1, 1, 1}},
                                        {4, 1, {1, 1, 3, 3}}, {4, 4, {1, 3, 5, 13}}, {5, 2, {1, 1, 5, 5, 17}}};
 
 struct Directions {

@@ -26,9 +26,13 @@ const std::vector<std::string> names = {"uniform", "standard_overcast", "clear",
 
 }  // namespace
 
-const std::vector<std::string>& sky_model_names() { return names; }
+const std::vector<std::string>& sky_model_names() {
+  return names;
+}
 
-std::string name_of(SkyModel model) { return names[static_cast<std::size_t>(model)]; }
+std::string name_of(SkyModel model) {
+  return names[static_cast<std::size_t>(model)];
+}
 
 std::optional<SkyModel> sky_model_from_name(const std::string& name) {
   const auto place = std::find(names.begin(), names.end(), name);
@@ -40,16 +44,20 @@ double Sky::relative_radiance(const Vec3& d) const {
   if (model == SkyModel::sphere) return 1.0 / pi;
   if (!(d.z > 0.0)) return 0.0;
   switch (model) {
-    case SkyModel::standard_overcast: return 3.0 * (1.0 + 2.0 * d.z) / (7.0 * pi);
-    case SkyModel::clear: return clear_normalisation * clear_sky(d.z, glm::dot(d, *sun));
-    default: return 1.0 / pi;
+    case SkyModel::standard_overcast:
+      return 3.0 * (1.0 + 2.0 * d.z) / (7.0 * pi);
+    case SkyModel::clear:
+      return clear_normalisation * clear_sky(d.z, glm::dot(d, *sun));
+    default:
+      return 1.0 / pi;
   }
 }
 
 void prepare_sky(Sky& sky, const std::string& where) {
   if (sky.model != SkyModel::clear) return;
   if (!sky.sun) throw InputError(where, "a clear sky without a sun", "a sun above the horizon, about which the clear sky is built");
-  if (!(sky.sun->z > 0.0)) throw InputError(where, "a clear sky with the sun below the horizon", "a sun above the horizon, about which the clear sky is built");
+  if (!(sky.sun->z > 0.0))
+    throw InputError(where, "a clear sky with the sun below the horizon", "a sun above the horizon, about which the clear sky is built");
   // Midpoint rule in zenith angle and in azimuth from the sun, half of it by symmetry. In these variables the integrand is smooth
   // at zenith and horizon, but for the indicatrix's cusp at the sun: good to 1e-5.
   constexpr int rings = 256, sectors = 256;

@@ -22,19 +22,30 @@ struct Term {
 // The Earth's place: the terms of VSOP87 (Bretagnon & Francou 1988) that Reda & Andreas list in their table A4.2, those of the
 // longitude from 1e-6 rad on and those of latitude and distance as far as an arc second needs them. What is left out adds up to
 // less than 0.0005 degrees.
-constexpr Term longitude_0[] = {
-    {175347046, 0, 0},                {3341656, 4.6692568, 6283.07585}, {34894, 4.6261, 12566.1517}, {3497, 2.7441, 5753.3849},
-    {3418, 2.8289, 3.5231},           {3136, 3.6277, 77713.7715},       {2676, 4.4181, 7860.4194},   {2343, 6.1352, 3930.2097},
-    {1324, 0.7425, 11506.7698},       {1273, 2.0371, 529.691},          {1199, 1.1096, 1577.3435},   {990, 5.233, 5884.927},
-    {902, 2.045, 26.298},             {857, 3.508, 398.149},            {780, 1.179, 5223.694},      {753, 2.533, 5507.553},
-    {505, 4.583, 18849.228},          {492, 4.205, 775.523},            {357, 2.92, 0.067},          {317, 5.849, 11790.629},
-    {284, 1.899, 796.298},            {271, 0.315, 10977.079},          {243, 0.345, 5486.778},      {206, 4.806, 2544.314},
-    {205, 1.869, 5573.143},           {202, 2.458, 6069.777},           {156, 0.833, 213.299},       {132, 3.411, 2942.463},
-    {126, 1.083, 20.775},             {115, 0.645, 0.98},               {103, 0.636, 4694.003},      {102, 0.976, 15720.839},
-    {102, 4.267, 7.114},              {99, 6.21, 2146.17},              {98, 0.68, 155.42}};
-constexpr Term longitude_1[] = {{628331966747.0, 0, 0},    {206059, 2.678235, 6283.07585}, {4303, 2.6351, 12566.1517}, {425, 1.59, 3.523},
-                                {119, 5.796, 26.298},      {109, 2.966, 1577.344},         {93, 2.59, 18849.23},       {72, 1.14, 529.69},
-                                {68, 1.87, 398.15},        {67, 4.41, 5507.55},            {59, 2.89, 5223.69},        {56, 2.17, 155.42}};
+constexpr Term longitude_0[] = {{175347046, 0, 0},           {3341656, 4.6692568, 6283.07585},
+                                {34894, 4.6261, 12566.1517}, {3497, 2.7441, 5753.3849},
+                                {3418, 2.8289, 3.5231},      {3136, 3.6277, 77713.7715},
+                                {2676, 4.4181, 7860.4194},   {2343, 6.1352, 3930.2097},
+                                {1324, 0.7425, 11506.7698},  {1273, 2.0371, 529.691},
+                                {1199, 1.1096, 1577.3435},   {990, 5.233, 5884.927},
+                                {902, 2.045, 26.298},        {857, 3.508, 398.149},
+                                {780, 1.179, 5223.694},      {753, 2.533, 5507.553},
+                                {505, 4.583, 18849.228},     {492, 4.205, 775.523},
+                                {357, 2.92, 0.067},          {317, 5.849, 11790.629},
+                                {284, 1.899, 796.298},       {271, 0.315, 10977.079},
+                                {243, 0.345, 5486.778},      {206, 4.806, 2544.314},
+                                {205, 1.869, 5573.143},      {202, 2.458, 6069.777},
+                                {156, 0.833, 213.299},       {132, 3.411, 2942.463},
+                                {126, 1.083, 20.775},        {115, 0.645, 0.98},
+                                {103, 0.636, 4694.003},      {102, 0.976, 15720.839},
+                                {102, 4.267, 7.114},         {99, 6.21, 2146.17},
+                                {98, 0.68, 155.42}};
+constexpr Term longitude_1[] = {{628331966747.0, 0, 0},     {206059, 2.678235, 6283.07585},
+                                {4303, 2.6351, 12566.1517}, {425, 1.59, 3.523},
+                                {119, 5.796, 26.298},       {109, 2.966, 1577.344},
+                                {93, 2.59, 18849.23},       {72, 1.14, 529.69},
+                                {68, 1.87, 398.15},         {67, 4.41, 5507.55},
+                                {59, 2.89, 5223.69},        {56, 2.17, 155.42}};
 constexpr Term longitude_2[] = {{52919, 0, 0}, {8720, 1.0721, 6283.0758}, {309, 0.867, 12566.152}, {27, 0.05, 3.52}};
 constexpr Term longitude_3[] = {{289, 5.844, 6283.076}, {35, 0, 0}, {17, 5.49, 12566.15}};
 constexpr Term longitude_4[] = {{114, 3.142, 0}, {8, 4.13, 6283.08}};
@@ -81,7 +92,8 @@ Vec3 direction_from_angles(double elevation_deg, double azimuth_deg) {
   return {horizontal * std::sin(azimuth_deg * degree), horizontal * std::cos(azimuth_deg * degree), std::sin(elevation_deg * degree)};
 }
 
-SolarPosition solar_position(const std::string& iso_time, double latitude_deg, double longitude_deg, double altitude_m, const std::string& where) {
+SolarPosition solar_position(const std::string& iso_time, double latitude_deg, double longitude_deg, double altitude_m,
+                             const std::string& where) {
   const auto need = [&](bool fine, const char* name, double value, const char* expected) {
     if (!fine) throw InputError(where, name + (" = " + std::to_string(value)), expected);
   };
@@ -94,7 +106,8 @@ SolarPosition solar_position(const std::string& iso_time, double latitude_deg, d
   const double days = jd - 2451545.0, century = days / 36525.0;
   const double ephemeris_century = (days + delta_t(jd) / 86400.0) / 36525.0, t = ephemeris_century / 10.0;
 
-  const double longitude = sum(longitude_0, t) + t * (sum(longitude_1, t) + t * (sum(longitude_2, t) + t * (sum(longitude_3, t) + t * sum(longitude_4, t))));
+  const double longitude =
+      sum(longitude_0, t) + t * (sum(longitude_1, t) + t * (sum(longitude_2, t) + t * (sum(longitude_3, t) + t * sum(longitude_4, t))));
   const double beta = -sum(latitude_0, t);
   const double distance = sum(distance_0, t) + t * sum(distance_1, t);  // [AU]
 
@@ -118,7 +131,8 @@ SolarPosition solar_position(const std::string& iso_time, double latitude_deg, d
 
   const double aberration = -20.4898 * arc_second / distance;
   const double lambda = longitude + std::numbers::pi + in_longitude + aberration;  // apparent, geocentric
-  const double right_ascension = std::atan2(std::sin(lambda) * std::cos(obliquity) - std::tan(beta) * std::sin(obliquity), std::cos(lambda));
+  const double right_ascension =
+      std::atan2(std::sin(lambda) * std::cos(obliquity) - std::tan(beta) * std::sin(obliquity), std::cos(lambda));
   const double declination = std::asin(std::sin(beta) * std::cos(obliquity) + std::cos(beta) * std::sin(obliquity) * std::sin(lambda));
   const double sidereal = polynomial({280.46061837 + 360.98564736629 * days, 0.0, 0.000387933, -1.0 / 38710000}, century) * degree +
                           in_longitude * std::cos(obliquity);
@@ -127,7 +141,8 @@ SolarPosition solar_position(const std::string& iso_time, double latitude_deg, d
   // Parallax: the observer stands on an ellipsoid, at a distance from its centre.
   const double phi = latitude_deg * degree, parallax = 8.794 * arc_second / distance;
   const double u = std::atan2(0.99664719 * std::sin(phi), std::cos(phi));
-  const double across = std::cos(u) + altitude_m / 6378140.0 * std::cos(phi), along = 0.99664719 * std::sin(u) + altitude_m / 6378140.0 * std::sin(phi);
+  const double across = std::cos(u) + altitude_m / 6378140.0 * std::cos(phi),
+               along = 0.99664719 * std::sin(u) + altitude_m / 6378140.0 * std::sin(phi);
   const double denominator = std::cos(declination) - across * std::sin(parallax) * std::cos(hour_angle);
   const double shift = std::atan2(-across * std::sin(parallax) * std::sin(hour_angle), denominator);
   const double local_declination = std::atan2((std::sin(declination) - along * std::sin(parallax)) * std::cos(shift), denominator);
@@ -135,7 +150,8 @@ SolarPosition solar_position(const std::string& iso_time, double latitude_deg, d
 
   const double elevation =
       std::asin(std::sin(phi) * std::sin(local_declination) + std::cos(phi) * std::cos(local_declination) * std::cos(local_hour_angle));
-  const double from_south = std::atan2(std::sin(local_hour_angle), std::cos(local_hour_angle) * std::sin(phi) - std::tan(local_declination) * std::cos(phi));
+  const double from_south =
+      std::atan2(std::sin(local_hour_angle), std::cos(local_hour_angle) * std::sin(phi) - std::tan(local_declination) * std::cos(phi));
   double azimuth = std::fmod(from_south / degree + 180.0, 360.0);
   if (azimuth < 0.0) azimuth += 360.0;
   return {elevation / degree, azimuth};

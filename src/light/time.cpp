@@ -40,7 +40,9 @@ class Fields {
   bool good_ = true;
 };
 
-bool is_leap(int year) { return (year % 4 == 0 && year % 100 != 0) || year % 400 == 0; }
+bool is_leap(int year) {
+  return (year % 4 == 0 && year % 100 != 0) || year % 400 == 0;
+}
 int days_in(int month, int year) {
   constexpr int days[] = {31, 28, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31};
   return month == 2 && is_leap(year) ? 29 : days[month - 1];
@@ -76,13 +78,15 @@ Moment parse_time(const std::string& iso_time, const std::string& where) {
   const bool exists = month >= 1 && month <= 12 && day >= 1 && day <= days_in(month, year) && hour <= 23 && minute <= 59 && second < 60.0 &&
                       zone_minute <= 59 && zone_minutes >= -24 * 60 && zone_minutes <= 24 * 60;
   if (!in.ended_well() || !exists)
-    throw InputError(where, "\"" + iso_time + "\"", "a time that exists, in ISO 8601 with its zone, such as \"2026-06-21T09:00:00+02:00\" or \"2026-06-21T07:00:00Z\"");
+    throw InputError(where, "\"" + iso_time + "\"",
+                     "a time that exists, in ISO 8601 with its zone, such as \"2026-06-21T09:00:00+02:00\" or \"2026-06-21T07:00:00Z\"");
 
   int day_of_year = day;
   for (int m = 1; m < month; ++m) day_of_year += days_in(m, year);
   const std::int64_t past = year - 1;  // whole years; year 0 comes out right because the divisions below round down
   const auto floor_div = [](std::int64_t a, std::int64_t b) { return (a >= 0 ? a : a - b + 1) / b; };
-  const std::int64_t days = 365 * past + floor_div(past, 4) - floor_div(past, 100) + floor_div(past, 400) + day_of_year;  // 1 January of year 1 is 1
+  const std::int64_t days =
+      365 * past + floor_div(past, 4) - floor_div(past, 100) + floor_div(past, 400) + day_of_year;  // 1 January of year 1 is 1
   constexpr double julian_date_of_day_zero = 1721424.5;
   const double day_fraction = (3600.0 * hour + 60.0 * (minute - zone_minutes) + second) / 86400.0;
   return {julian_date_of_day_zero + static_cast<double>(days) + day_fraction, day_of_year};

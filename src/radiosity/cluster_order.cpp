@@ -127,14 +127,16 @@ ClusterOrder cluster_order(const Scene& scene, const FacetScene& facets) {
   std::vector<std::size_t> organ_end(facets.copies.size(), 0);
   for (const auto& shape : facets.shapes) {
     const auto& plant = *scene.plants[shape.plant].plant;
-    if (plant.shapes[shape.shape].triangle_count > 0) organ_end[shape.copy] = std::max<std::size_t>(organ_end[shape.copy], facets.organ[shape.first_facet] + 1);
+    if (plant.shapes[shape.shape].triangle_count > 0)
+      organ_end[shape.copy] = std::max<std::size_t>(organ_end[shape.copy], facets.organ[shape.first_facet] + 1);
   }
   for (; copy_index < facets.copies.size(); ++copy_index) {
     const auto& plant = *scene.plants[facets.copy_plant[copy_index]].plant;
     const std::size_t end = std::max(first, organ_end[copy_index]);
     const auto base = static_cast<std::uint32_t>(units.size());
     units.resize(units.size() + plant.structures.size());
-    for (std::size_t s = plant.structures.size(); s-- > 1;) units[base + plant.structures[s].parent].children.push_back(base + static_cast<std::uint32_t>(s));
+    for (std::size_t s = plant.structures.size(); s-- > 1;)
+      units[base + plant.structures[s].parent].children.push_back(base + static_cast<std::uint32_t>(s));
     for (std::size_t o = first; o < end; ++o) units[base + facets.organs.structure[o]].children.push_back(static_cast<std::uint32_t>(o));
     for (std::size_t s = plant.structures.size(); s-- > 0;) {
       auto& unit = units[base + s];

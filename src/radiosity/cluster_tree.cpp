@@ -7,8 +7,8 @@
 namespace sunfleck {
 
 std::size_t ClusterTree::bytes() const {
-  std::size_t total = bytes_of(parent) + bytes_of(depth) + bytes_of(diameter) + bytes_of(albedo) + bytes_of(cluster_of_element) + bytes_of(first_element) +
-                      bytes_of(elements);
+  std::size_t total = bytes_of(parent) + bytes_of(depth) + bytes_of(diameter) + bytes_of(albedo) + bytes_of(cluster_of_element) +
+                      bytes_of(first_element) + bytes_of(elements);
   for (const auto& l : levels) total += bytes_of(l);
   return total;
 }

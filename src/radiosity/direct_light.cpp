@@ -16,7 +16,9 @@ namespace {
 constexpr std::uint64_t sky_stream = 0x51ed270b27c4f2a9ULL, sun_stream = 0x2545f4914f6cdd1dULL;
 
 /// Mean distance between lines so that an organ of the mean size meets `lines` of them (a leaf shows half its area on average).
-double pitch_for(double organ_area, double lines) { return std::sqrt(0.5 * organ_area / lines); }
+double pitch_for(double organ_area, double lines) {
+  return std::sqrt(0.5 * organ_area / lines);
+}
 
 /// Element means of a per-side quantity take the place of what no line has met.
 void fill_unsampled(const Elements& e, const std::vector<bool>& unsampled, std::vector<float>& value) {
@@ -44,7 +46,9 @@ class Conservation {
     found_[ground] += found;
     given_[ground] += given;
   }
-  float factor(bool ground) const { return given_[ground] > 0.0 && found_[ground] > 0.0 ? static_cast<float>(found_[ground] / given_[ground]) : 1.0f; }
+  float factor(bool ground) const {
+    return given_[ground] > 0.0 && found_[ground] > 0.0 ? static_cast<float>(found_[ground] / given_[ground]) : 1.0f;
+  }
 
  private:
   double found_[2] = {0, 0}, given_[2] = {0, 0};
@@ -56,9 +60,15 @@ bool same_radiance(const Sky& a, const Sky& b) {
 
 class DirectLightSolver {
  public:
-  DirectLightSolver(const Scene& scene, const FacetScene& facets, const Elements& elements, const RadiositySettings& settings, Timings& timings,
-                    Progress& progress)
-      : scene_(scene), plant_facets_(facets.plant_facets), e_(elements), s_(elements.surface), settings_(settings), timings_(timings), progress_(progress) {}
+  DirectLightSolver(const Scene& scene, const FacetScene& facets, const Elements& elements, const RadiositySettings& settings,
+                    Timings& timings, Progress& progress)
+      : scene_(scene),
+        plant_facets_(facets.plant_facets),
+        e_(elements),
+        s_(elements.surface),
+        settings_(settings),
+        timings_(timings),
+        progress_(progress) {}
 
   DirectLight run() {
     auto sources = light_sources(scene_);
@@ -119,7 +129,8 @@ class DirectLightSolver {
         }
       tbb::parallel_for(tbb::blocked_range<std::size_t>(0, cells, 4096), [&](const auto& range) {
         for (std::uint32_t i = 0; i < n; ++i) {
-          const auto dx = static_cast<float>(direction[i].x), dy = static_cast<float>(direction[i].y), dz = static_cast<float>(direction[i].z);
+          const auto dx = static_cast<float>(direction[i].x), dy = static_cast<float>(direction[i].y),
+                     dz = static_cast<float>(direction[i].z);
           for (std::size_t c = range.begin(); c < range.end(); ++c) {
             if (counts[i].all[c] == 0.0f) continue;
             all[c] += weight[i] * counts[i].all[c];
@@ -225,7 +236,8 @@ class DirectLightSolver {
     auto& lit = out_.sunlit.emplace_back(2 * cells, 0.0f);
     auto& cosine = out_.sun_cosine.emplace_back(s_.size());
     for (std::size_t t = 0; t < s_.size(); ++t)
-      cosine[t] = static_cast<float>(s_.normal[0][t] * sun.direction.x + s_.normal[1][t] * sun.direction.y + s_.normal[2][t] * sun.direction.z);
+      cosine[t] =
+          static_cast<float>(s_.normal[0][t] * sun.direction.x + s_.normal[1][t] * sun.direction.y + s_.normal[2][t] * sun.direction.z);
     std::vector<bool> unsampled(cells);
     Conservation conservation;
     double total = 0;
@@ -235,7 +247,8 @@ class DirectLightSolver {
       unsampled[c] = all[c] == 0.0f;
       if (all[c] > 0.0f) lit[2 * c + (cosine[e_.row_of_cell[c]] > 0.0f ? 0 : 1)] = visible[c] / all[c];
     }
-    // an unsampled cell's lit side may be the other one than its element's mean says: keep the fraction, move it to the side that faces the sun
+    // an unsampled cell's lit side may be the other one than its element's mean says: keep the fraction, move it to the side that faces the
+    // sun
     fill_unsampled(e_, unsampled, lit);
     for (std::size_t c = 0; c < cells; ++c)
       if (unsampled[c]) {
@@ -245,7 +258,9 @@ class DirectLightSolver {
         lit[2 * c + 1] = front ? 0.0f : fraction;
       }
     out_.fragments += static_cast<std::uint64_t>(total);
-    const auto power = [&](std::size_t c) { return cell_area(c) * std::fabs(cosine[e_.row_of_cell[c]]) * (static_cast<double>(lit[2 * c]) + lit[2 * c + 1]); };
+    const auto power = [&](std::size_t c) {
+      return cell_area(c) * std::fabs(cosine[e_.row_of_cell[c]]) * (static_cast<double>(lit[2 * c]) + lit[2 * c + 1]);
+    };
     for (std::size_t c = 0; c < cells; ++c) conservation.add(is_ground(c), 0.0, power(c));
     for (std::size_t c = 0; c < cells; ++c)
       for (int side = 0; side < 2; ++side) lit[2 * c + side] = std::min(1.0f, lit[2 * c + side] * conservation.factor(is_ground(c)));
@@ -287,7 +302,9 @@ LightSources light_sources(const Scene& scene) {
       if (sky_row == out.skies.size()) out.skies.push_back(&*state.sky);
     }
     if (state.sun) {
-      const auto same = [&](const Sun& sun) { return sun.direction == state.sun->direction && sun.angular_diameter_deg == state.sun->angular_diameter_deg; };
+      const auto same = [&](const Sun& sun) {
+        return sun.direction == state.sun->direction && sun.angular_diameter_deg == state.sun->angular_diameter_deg;
+      };
       for (sun_row = 0; sun_row < out.suns.size() && !same(*out.suns[sun_row]); ++sun_row) {
       }
       if (sun_row == out.suns.size()) out.suns.push_back(&*state.sun);
@@ -298,8 +315,8 @@ LightSources light_sources(const Scene& scene) {
   return out;
 }
 
-DirectLight direct_light(const Scene& scene, const FacetScene& facets, const Elements& elements, const RadiositySettings& settings, Timings& timings,
-                         Progress& progress) {
+DirectLight direct_light(const Scene& scene, const FacetScene& facets, const Elements& elements, const RadiositySettings& settings,
+                         Timings& timings, Progress& progress) {
   return DirectLightSolver(scene, facets, elements, settings, timings, progress).run();
 }
 

@@ -53,7 +53,8 @@ bool near_plants(const Triangle& t, const Box& plants) {
   const Vec3 size = plants.size();
   const double margin = std::max({size.x, size.y, size.z}) / 3.0;
   for (const auto& p : t)
-    if (p.x > plants.low.x - margin && p.x < plants.high.x + margin && p.y > plants.low.y - margin && p.y < plants.high.y + margin) return true;
+    if (p.x > plants.low.x - margin && p.x < plants.high.x + margin && p.y > plants.low.y - margin && p.y < plants.high.y + margin)
+      return true;
   return false;
 }
 
@@ -66,8 +67,8 @@ struct OpenElement {
 }  // namespace
 
 std::size_t Elements::bytes() const {
-  return bytes_of(order) + surface.bytes() + bytes_of(element_of_cell) + bytes_of(row_of_cell) + bytes_of(organ_of_row) + bytes_of(first_cell) + bytes_of(cells) + bytes_of(area) +
-         bytes_of(material);
+  return bytes_of(order) + surface.bytes() + bytes_of(element_of_cell) + bytes_of(row_of_cell) + bytes_of(organ_of_row) +
+         bytes_of(first_cell) + bytes_of(cells) + bytes_of(area) + bytes_of(material);
 }
 
 Elements make_elements(const Scene& scene, const FacetScene& facets, const RadiositySettings& settings) {

@@ -14,8 +14,8 @@ namespace sunfleck {
 /// Facets in the order of the cluster tree, cut into cells (large facets) and gathered into elements (small facets of one organ and
 /// one material; organs smaller than half an element share one with neighbours).
 struct Elements {
-  std::vector<std::uint32_t> order;            ///< [n] facet of each row of the surface
-  ClusterOrder tree;                           ///< of organs
+  std::vector<std::uint32_t> order;  ///< [n] facet of each row of the surface
+  ClusterOrder tree;                 ///< of organs
   Surface surface;
   std::vector<std::uint32_t> element_of_cell;  ///< [cells]
   std::vector<std::uint32_t> organ_of_row;     ///< [n] row of FacetScene::organs

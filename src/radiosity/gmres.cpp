@@ -44,8 +44,8 @@ void scale(Field& y, const std::vector<double>& factor, std::size_t columns) {
 
 }  // namespace
 
-GmresResult gmres(const std::function<void(const Field& x, Field& kx)>& apply, const Field& b, const std::vector<float>& weight, std::size_t columns,
-                  double tolerance, int most_iterations, Field& x, Progress& progress) {
+GmresResult gmres(const std::function<void(const Field& x, Field& kx)>& apply, const Field& b, const std::vector<float>& weight,
+                  std::size_t columns, double tolerance, int most_iterations, Field& x, Progress& progress) {
   GmresResult result;
   const auto norm = [&](const Field& v) {
     auto n = dot(v, v, weight, columns);

@@ -19,7 +19,7 @@ struct GmresResult {
 /// inner product weighted by `weight` [sides]. x holds the first guess. Stops when the *true* residual, recomputed at every restart,
 /// is at most `tolerance` x ||b|| in every column; columns with b = 0 stay 0. Sums run in an order that does not depend on the number
 /// of threads. Throws Stopped.
-GmresResult gmres(const std::function<void(const Field& x, Field& kx)>& apply, const Field& b, const std::vector<float>& weight, std::size_t columns,
-                  double tolerance, int most_iterations, Field& x, Progress& progress);
+GmresResult gmres(const std::function<void(const Field& x, Field& kx)>& apply, const Field& b, const std::vector<float>& weight,
+                  std::size_t columns, double tolerance, int most_iterations, Field& x, Progress& progress);
 
 }  // namespace sunfleck

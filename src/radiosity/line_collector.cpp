@@ -46,7 +46,8 @@ std::vector<bool> interior_sides(const Elements& e, double pitch, std::uint64_t 
   std::vector<bool> interior(2 * organs, false);
   const auto share = [&](const auto& lines, std::size_t i) { return all[i] > 0 ? static_cast<double>(lines[i]) / all[i] : 0.0; };
   // the second rule spares leaves that lie low over the ground or on one another
-  for (std::size_t i = 0; i < interior.size(); ++i) interior[i] = share(inside, i) >= 0.85 && share(own, i) >= 0.3 && share(inside, i ^ 1) < 0.7;
+  for (std::size_t i = 0; i < interior.size(); ++i)
+    interior[i] = share(inside, i) >= 0.85 && share(own, i) >= 0.3 && share(inside, i ^ 1) < 0.7;
   if (std::find(interior.begin(), interior.end(), true) == interior.end()) return {};
   return interior;
 }
@@ -105,7 +106,9 @@ bool LineCollector::cluster_link(std::uint32_t low, std::uint32_t high, double d
   std::uint32_t a = t.cluster_of_element[low >> 1], b = t.cluster_of_element[high >> 1];
   if (a == b) return false;
   const float limit = link_error_ * static_cast<float>(distance);
-  const auto allowed = [&](std::uint32_t x, std::uint32_t y) { return std::max(t.albedo[x], t.albedo[y]) * (t.diameter[x] + t.diameter[y]) <= limit; };
+  const auto allowed = [&](std::uint32_t x, std::uint32_t y) {
+    return std::max(t.albedo[x], t.albedo[y]) * (t.diameter[x] + t.diameter[y]) <= limit;
+  };
   if (!allowed(a, b)) return false;
   for (;;) {  // climb with the smaller of the two
     const auto up_a = t.parent[a], up_b = t.parent[b];

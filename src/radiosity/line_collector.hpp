@@ -36,14 +36,15 @@ struct FirstReflection {
 struct DirectionLines {
   std::vector<SidePair> near;
   std::vector<FarPair> far;
-  std::vector<FirstReflection> reflections;  ///< empty without sun
-  std::vector<std::uint32_t> withheld;       ///< sides of cells, once per line on which they are enclosed; empty without sun
+  std::vector<FirstReflection> reflections;       ///< empty without sun
+  std::vector<std::uint32_t> withheld;            ///< sides of cells, once per line on which they are enclosed; empty without sun
   std::vector<std::uint32_t> open_up, open_down;  ///< sides, once per line
   std::vector<OutsideArea> outside;
 };
 
 /// Sides of organs that face the inside of a hollow body (stems are open tubes): at least 85 % of their lines end on the same side of
-/// the same organ (30 % at least) or within a leaf's length, while the other side sees farther. Judged from 16 directions. [2 * organ + side]
+/// the same organ (30 % at least) or within a leaf's length, while the other side sees farther. Judged from 16 directions. [2 * organ +
+/// side]
 std::vector<bool> interior_sides(const Elements& elements, double pitch, std::uint64_t seed, Progress& progress);
 
 class LineCollector {

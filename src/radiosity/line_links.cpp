@@ -67,7 +67,8 @@ class HalfBuilder {
       if (!d->withheld.empty() && withheld_.empty()) withheld_.assign(reflection_.size(), 0.0f);
       for (const auto cell_side : d->withheld) {
         const std::size_t row = 2 * std::size_t{e_.element_of_cell[cell_side >> 1]} + (cell_side & 1u);
-        for (std::size_t c = 0; c < sun_.columns; ++c) withheld_[row * sun_.columns + c] += sun_.exitance[std::size_t{cell_side} * sun_.columns + c];
+        for (std::size_t c = 0; c < sun_.columns; ++c)
+          withheld_[row * sun_.columns + c] += sun_.exitance[std::size_t{cell_side} * sun_.columns + c];
       }
       for (const auto& p : d->far) {
         auto& low = far_.of_side[std::size_t{p.low} * channels + 2 * bin];
@@ -132,7 +133,8 @@ class HalfBuilder {
       for (std::size_t k = begin; k < end;) {
         std::size_t last = k + 1;
         while (last < end && other_[last] == other_[k] && last - k < std::numeric_limits<std::uint16_t>::max()) ++last;
-        merged_.push_back({static_cast<std::uint32_t>(node), other_[k], static_cast<std::uint16_t>(last - k), static_cast<std::uint16_t>(bin)});
+        merged_.push_back(
+            {static_cast<std::uint32_t>(node), other_[k], static_cast<std::uint16_t>(last - k), static_cast<std::uint16_t>(bin)});
         k = last;
       }
       begin = end;
@@ -203,7 +205,8 @@ class HalfBuilder {
     for (std::size_t node = tree_->size(); node-- > 0;) {
       const auto up = tree_->parent[node];
       if (up == ClusterTree::none) continue;
-      for (std::uint32_t q = 0; q < channels; ++q) far_.through[up * channels + q] += far_.through[node * channels + q] - far_.linked[node * channels + q];
+      for (std::uint32_t q = 0; q < channels; ++q)
+        far_.through[up * channels + q] += far_.through[node * channels + q] - far_.linked[node * channels + q];
     }
     far_.first_link.assign(tree_->size() + 1, 0);
     for (const auto& m : merged_) {
@@ -252,8 +255,9 @@ bool clusters_pay(const std::vector<DirectionLines>& found) {
 }
 
 std::size_t bytes_of_half(const HalfLinks& h) {
-  return bytes_of(h.near.start) + bytes_of(h.near.column) + bytes_of(h.near.count) + bytes_of(h.far.of_side) + bytes_of(h.far.through) + bytes_of(h.far.linked) +
-         bytes_of(h.far.first_link) + bytes_of(h.far.links) + bytes_of(h.lines) + bytes_of(h.open_up) + bytes_of(h.open_down) + bytes_of(h.first_reflection);
+  return bytes_of(h.near.start) + bytes_of(h.near.column) + bytes_of(h.near.count) + bytes_of(h.far.of_side) + bytes_of(h.far.through) +
+         bytes_of(h.far.linked) + bytes_of(h.far.first_link) + bytes_of(h.far.links) + bytes_of(h.lines) + bytes_of(h.open_up) +
+         bytes_of(h.open_down) + bytes_of(h.first_reflection);
 }
 
 }  // namespace
@@ -283,7 +287,8 @@ double line_batch(std::size_t elements, const RadiosityDensity& density) {
   return std::clamp(std::floor(4e6 / std::max(1.0, expected)), 2.0, 16.0);
 }
 
-LineLinks line_links(const Elements& e, const ClusterTree* tree, const SunReflection& sun, const RadiositySettings& settings, Progress& progress) {
+LineLinks line_links(const Elements& e, const ClusterTree* tree, const SunReflection& sun, const RadiositySettings& settings,
+                     Progress& progress) {
   const std::uint32_t directions = settings.density.directions;
   const double pitch = std::sqrt(0.5 * e.element_area / settings.density.lines_per_element);
   LineLinks links;

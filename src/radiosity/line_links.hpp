@@ -36,7 +36,7 @@ struct FarField {
   struct Link {
     std::uint32_t source;  ///< emitting node * channels + its channel
     std::uint16_t count;
-    std::uint16_t channel; ///< of the receiving node
+    std::uint16_t channel;  ///< of the receiving node
   };
   std::vector<Link> links;
 };
@@ -50,8 +50,9 @@ struct HalfLinks {
   /// The sun's light after its first reflection, summed over the lines of each side: [sides][columns] [W m^-2 lines]. Taken cell by
   /// cell, where the elements only know a mean: sunlit parts shine more than shaded ones, and are seen more from outside.
   std::vector<float> first_reflection;
-  std::vector<float> withheld_reflection;        ///< [sides of elements][columns] the same, summed over lines that find a side enclosed; empty if none
-  std::vector<double> escaped_reflection;        ///< [columns] the same, summed over the lines on which it leaves the scene
+  std::vector<float>
+      withheld_reflection;  ///< [sides of elements][columns] the same, summed over lines that find a side enclosed; empty if none
+  std::vector<double> escaped_reflection;  ///< [columns] the same, summed over the lines on which it leaves the scene
 };
 
 /// Sunlight as it leaves each side of each cell [W m^-2].
@@ -61,8 +62,8 @@ struct SunReflection {
 };
 
 /// Rows are sides, 2 * part + (0 front, 1 back). Parts are the elements, followed by the *enclosed parts* of those elements that stick in
-/// another organ, as the base of a petiole does in a stem: hits that face the inside of a hollow organ belong to the enclosed part. An element that kept it would shine inside the organ that hides it; stems of a real plant then
-/// absorbed 20 % too much.
+/// another organ, as the base of a petiole does in a stem: hits that face the inside of a hollow organ belong to the enclosed part. An
+/// element that kept it would shine inside the organ that hides it; stems of a real plant then absorbed 20 % too much.
 struct LineLinks {
   std::array<HalfLinks, 2> half;
   std::vector<std::uint32_t> whole;          ///< [parts] the element that a part belongs to; part i < elements belongs to element i
@@ -70,7 +71,7 @@ struct LineLinks {
   std::vector<float> enclosed;               ///< [cells] fraction of a cell that is enclosed; empty where no element has an enclosed part
   bool clustered = false;                    ///< some links run between clusters
   std::uint64_t fragments = 0;
-  double area_of_line = 0;                   ///< one-sided area that a line of both halves together stands for: sum of lines x this = area [m^2]
+  double area_of_line = 0;  ///< one-sided area that a line of both halves together stands for: sum of lines x this = area [m^2]
   static constexpr std::uint32_t none = 0xffffffffu;
 
   std::size_t sides() const { return 2 * whole.size(); }
@@ -86,6 +87,7 @@ double line_batch(std::size_t elements, const RadiosityDensity& density);
 /// an estimate of how much the radiosity met, relative to the mean, changes when A sees B from elsewhere within A: the light of dark
 /// things is scattered little, and a look from far spreads over what lies around anyway. No such pair: a link between the elements.
 /// Method flat has no clusters; a scene in which hardly a line runs far makes no use of them.
-LineLinks line_links(const Elements& elements, const ClusterTree* tree, const SunReflection& sun, const RadiositySettings& settings, Progress& progress);
+LineLinks line_links(const Elements& elements, const ClusterTree* tree, const SunReflection& sun, const RadiositySettings& settings,
+                     Progress& progress);
 
 }  // namespace sunfleck

@@ -26,7 +26,9 @@ double projected_area(const Elements& e, const Vec3* direction) {
   return sum;
 }
 
-std::uint64_t whole(double x) { return static_cast<std::uint64_t>(std::llround(x)); }
+std::uint64_t whole(double x) {
+  return static_cast<std::uint64_t>(std::llround(x));
+}
 
 /// What few directions show of the links.
 struct Pilot {
@@ -62,7 +64,8 @@ class Planner {
     const std::uint64_t sides = 2 * plan_.cells;
     std::uint64_t values = 0;
     if (!sources.skies.empty()) {
-      plan_.sky_fragments = whole(projected_area(elements_, nullptr) * density.sky_directions * 2.0 * density.sky_lines_per_organ / elements_.organ_area);
+      plan_.sky_fragments =
+          whole(projected_area(elements_, nullptr) * density.sky_directions * 2.0 * density.sky_lines_per_organ / elements_.organ_area);
       values += (sources.skies.size() + 1) * sides;
     }
     for (const auto* sun : sources.suns) {
@@ -102,15 +105,20 @@ class Planner {
     plan_.links = whole(near + far);
 
     const std::uint64_t sides = 2 * plan_.elements, slots = plan_.clusters * channels;
-    // of each half: starts of the rows of near links, lines and how many of them are open; far lines of sides and nodes; the sun's first reflection
-    const std::uint64_t half = 4 * sides * word + (tree ? sides * channels + 2 * slots * word + plan_.clusters * word : 0) + (sun_ ? sides * columns_ * word : 0);
-    plan_.memory.emplace_back("links", 2 * half + whole(near * (sizeof(std::uint32_t) + sizeof(std::uint16_t)) + far * sizeof(FarField::Link)) + plan_.elements * word + (tree ? tree->bytes() : 0));
+    // of each half: starts of the rows of near links, lines and how many of them are open; far lines of sides and nodes; the sun's first
+    // reflection
+    const std::uint64_t half =
+        4 * sides * word + (tree ? sides * channels + 2 * slots * word + plan_.clusters * word : 0) + (sun_ ? sides * columns_ * word : 0);
+    plan_.memory.emplace_back("links", 2 * half +
+                                           whole(near * (sizeof(std::uint32_t) + sizeof(std::uint16_t)) + far * sizeof(FarField::Link)) +
+                                           plan_.elements * word + (tree ? tree->bytes() : 0));
     plan_.memory.emplace_back("fields", 14 * 2 * sides * columns_ * word + (4 * sides + (tree ? 2 * slots * (1 + columns_) : 0)) * word);
     // a pair of sides waits in 8 bytes, and in 12 while its half is sorted; all that a batch of directions meets is kept in full
     constexpr double bytes_of_pair = 12.0, bytes_of_meeting = 32.0;
     const double in_batch = std::min(directions, line_batch(plan_.elements, settings_.density)) / directions;
-    plan_.memory.emplace_back("lines", whole(more.near_pairs * times * bytes_of_pair + more.fragments * times * in_batch * bytes_of_meeting) +
-                                           (sun_ ? 2 * plan_.cells * columns_ * word : 0));
+    plan_.memory.emplace_back("lines",
+                              whole(more.near_pairs * times * bytes_of_pair + more.fragments * times * in_batch * bytes_of_meeting) +
+                                  (sun_ ? 2 * plan_.cells * columns_ * word : 0));
   }
 
   const Scene& scene_;

@@ -23,11 +23,19 @@ constexpr int most_iterations = 400;
 class RadiositySolver {
  public:
   RadiositySolver(const Scene& scene, const FacetScene& facets, const RadiositySettings& settings, IrradianceSink& sink, Progress& progress)
-      : scene_(scene), facets_(facets), settings_(settings), sink_(sink), progress_(progress), states_(scene.states.size()), bands_(facets.bands),
+      : scene_(scene),
+        facets_(facets),
+        settings_(settings),
+        sink_(sink),
+        progress_(progress),
+        states_(scene.states.size()),
+        bands_(facets.bands),
         columns_(states_ * bands_) {}
 
   SolveReport run() {
-    report_.method = settings_.method == RadiosityMethod::direct ? "direct" : settings_.method == RadiosityMethod::flat ? "flat" : "clustering";
+    report_.method = settings_.method == RadiosityMethod::direct ? "direct"
+                     : settings_.method == RadiosityMethod::flat ? "flat"
+                                                                 : "clustering";
     const bool scatter = settings_.method != RadiosityMethod::direct;
     Stopwatch watch;
     elements_ = make_elements(scene_, facets_, settings_);
@@ -96,7 +104,8 @@ class RadiositySolver {
           }
         }
         const double open = area - hidden;
-        if (!links.enclosed_part.empty() && links.enclosed_part[i] != LineLinks::none) part_area_[links.enclosed_part[i]] = static_cast<float>(hidden);
+        if (!links.enclosed_part.empty() && links.enclosed_part[i] != LineLinks::none)
+          part_area_[links.enclosed_part[i]] = static_cast<float>(hidden);
         part_area_[i] = static_cast<float>(open);
         if (open <= 1e-6 * area || area == 0.0) continue;
         for (std::size_t side = 0; side < 2; ++side) {
@@ -228,12 +237,14 @@ class RadiositySolver {
       gather[h].add_first_reflection(0.5f, gathered_.data());
       for (std::size_t i = 0; i < sides; ++i)
         for (std::size_t c = 0; c < columns_; ++c)
-          report_.balance[c / bands_][c % bands_].escaped += 0.5 * static_cast<double>(part_area_[i / 2]) * b[i * columns_ + c] * escape[h][i];
+          report_.balance[c / bands_][c % bands_].escaped +=
+              0.5 * static_cast<double>(part_area_[i / 2]) * b[i * columns_ + c] * escape[h][i];
     }
     for (std::size_t h = 0; h < 2; ++h)
       for (std::size_t c = 0; c < links.half[h].escaped_reflection.size(); ++c)
         report_.balance[c / bands_][c % bands_].escaped += links.half[h].escaped_reflection[c] * links.area_of_line;
-    report_.memory.emplace_back("fields", 14 * bytes_of(irradiance) + gather[0].bytes() + gather[1].bytes() + bytes_of(cluster_fields.sent) + bytes_of(cluster_fields.received));
+    report_.memory.emplace_back("fields", 14 * bytes_of(irradiance) + gather[0].bytes() + gather[1].bytes() +
+                                              bytes_of(cluster_fields.sent) + bytes_of(cluster_fields.received));
     timed("iteration", watch);
     progress_.line(fmt::format("{} applications of the operator, residual {:.1e}", result.residuals.size(), result.residuals.back()));
   }
@@ -284,8 +295,8 @@ class RadiositySolver {
     return (open - inside) * seen + inside * seen_inside;
   }
 
-  void facet_row(std::size_t t, std::size_t facet, std::size_t i, std::size_t count, std::vector<float>& irradiance, std::vector<float>& sunlit,
-                 std::vector<Balance>& balance) {
+  void facet_row(std::size_t t, std::size_t facet, std::size_t i, std::size_t count, std::vector<float>& irradiance,
+                 std::vector<float>& sunlit, std::vector<Balance>& balance) {
     const auto& s = elements_.surface;
     const auto& optics = facets_.materials[facets_.optics[facet]];
     const std::uint32_t begin = s.first_cell[t], end = s.first_cell[t + 1];
@@ -334,7 +345,8 @@ class RadiositySolver {
 
 }  // namespace
 
-SolveReport solve_radiosity(const Scene& scene, const FacetScene& facets, const RadiositySettings& settings, IrradianceSink& sink, Progress& progress) {
+SolveReport solve_radiosity(const Scene& scene, const FacetScene& facets, const RadiositySettings& settings, IrradianceSink& sink,
+                            Progress& progress) {
   std::optional<tbb::global_control> control;
   if (settings.threads > 0) control.emplace(tbb::global_control::max_allowed_parallelism, settings.threads);
   return RadiositySolver(scene, facets, settings, sink, progress).run();

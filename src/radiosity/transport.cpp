@@ -32,7 +32,8 @@ void Reflection::apply(const float* irradiance, float* radiosity) const {
   });
 }
 
-Gather::Gather(const HalfLinks& half, const ClusterTree* tree, const std::vector<float>& sky_lines, std::size_t columns, ClusterFields& fields)
+Gather::Gather(const HalfLinks& half, const ClusterTree* tree, const std::vector<float>& sky_lines, std::size_t columns,
+               ClusterFields& fields)
     : half_(half), tree_(tree), columns_(columns), inverse_(half.lines.size()), donor_(half.lines.size()), fields_(fields) {
   const auto known = [&](std::size_t i) { return half_.lines[i] - sky_lines[i] > 0.5f; };
   for (std::size_t i = 0; i < inverse_.size(); ++i) {
@@ -44,12 +45,15 @@ Gather::Gather(const HalfLinks& half, const ClusterTree* tree, const std::vector
   }
   if (!tree_) return;
   inverse_through_.resize(half_.far.through.size());
-  for (std::size_t i = 0; i < inverse_through_.size(); ++i) inverse_through_[i] = half_.far.through[i] > 0 ? 1.0f / static_cast<float>(half_.far.through[i]) : 0.0f;
+  for (std::size_t i = 0; i < inverse_through_.size(); ++i)
+    inverse_through_[i] = half_.far.through[i] > 0 ? 1.0f / static_cast<float>(half_.far.through[i]) : 0.0f;
   fields_.sent.resize(inverse_through_.size() * columns_);
   fields_.received.resize(fields_.sent.size());
 }
 
-std::size_t Gather::bytes() const { return bytes_of(inverse_) + bytes_of(donor_) + bytes_of(inverse_through_); }
+std::size_t Gather::bytes() const {
+  return bytes_of(inverse_) + bytes_of(donor_) + bytes_of(inverse_through_);
+}
 
 namespace {
 
@@ -85,11 +89,20 @@ void Gather::gather(const float* b, float* s) const {
   const std::size_t element_sides = tree_ ? 2 * tree_->cluster_of_element.size() : 0;
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, sides, 512), [&](const auto& range) {
     switch (n) {
-      case 1: near_rows<1>(half_.near, b, s, range.begin(), range.end(), n); break;
-      case 2: near_rows<2>(half_.near, b, s, range.begin(), range.end(), n); break;
-      case 3: near_rows<3>(half_.near, b, s, range.begin(), range.end(), n); break;
-      case 4: near_rows<4>(half_.near, b, s, range.begin(), range.end(), n); break;
-      default: near_rows<0>(half_.near, b, s, range.begin(), range.end(), n);
+      case 1:
+        near_rows<1>(half_.near, b, s, range.begin(), range.end(), n);
+        break;
+      case 2:
+        near_rows<2>(half_.near, b, s, range.begin(), range.end(), n);
+        break;
+      case 3:
+        near_rows<3>(half_.near, b, s, range.begin(), range.end(), n);
+        break;
+      case 4:
+        near_rows<4>(half_.near, b, s, range.begin(), range.end(), n);
+        break;
+      default:
+        near_rows<0>(half_.near, b, s, range.begin(), range.end(), n);
     }
     for (std::size_t i = range.begin(); i < range.end(); ++i) {
       float* to = s + i * n;

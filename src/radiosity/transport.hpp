@@ -54,9 +54,9 @@ class Gather {
   const HalfLinks& half_;
   const ClusterTree* tree_;
   std::size_t columns_;
-  std::vector<float> inverse_;               ///< [sides] 1 / (lines - sky lines); 0 where nothing but sky is seen
-  std::vector<std::uint32_t> donor_;         ///< [sides] the row that serves a side
-  std::vector<float> inverse_through_;       ///< [nodes][channels]
+  std::vector<float> inverse_;          ///< [sides] 1 / (lines - sky lines); 0 where nothing but sky is seen
+  std::vector<std::uint32_t> donor_;    ///< [sides] the row that serves a side
+  std::vector<float> inverse_through_;  ///< [nodes][channels]
   ClusterFields& fields_;
 };
 

@@ -24,7 +24,8 @@ Vec3 cosine_direction(const Vec3& n, double u, double v) {
 
 }  // namespace
 
-SampleTarget::SampleTarget(const FacetScene& scene, std::vector<std::uint32_t> facets, std::uint64_t key) : facets_(std::move(facets)), key_(key) {
+SampleTarget::SampleTarget(const FacetScene& scene, std::vector<std::uint32_t> facets, std::uint64_t key)
+    : facets_(std::move(facets)), key_(key) {
   std::erase_if(facets_, [&](std::uint32_t f) { return !(scene.area[f] > 0.0f); });
   cumulative_.reserve(facets_.size());
   double total = 0.0;
@@ -34,7 +35,8 @@ SampleTarget::SampleTarget(const FacetScene& scene, std::vector<std::uint32_t> f
 std::uint32_t SampleTarget::facet_at(double x, double& within) const {
   if (facets_.size() == 1) return within = x, facets_[0];
   const double a = x * area();
-  const auto i = std::min<std::size_t>(std::upper_bound(cumulative_.begin(), cumulative_.end(), a) - cumulative_.begin(), facets_.size() - 1);
+  const auto i =
+      std::min<std::size_t>(std::upper_bound(cumulative_.begin(), cumulative_.end(), a) - cumulative_.begin(), facets_.size() - 1);
   const double low = i == 0 ? 0.0 : cumulative_[i - 1];
   within = std::clamp((a - low) / (cumulative_[i] - low), 0.0, 1.0);
   return facets_[i];
@@ -89,8 +91,8 @@ struct PathSampler::Impl {
   std::uint64_t seed;
   std::size_t states, bands;
   bool has_sun = false;
-  std::vector<Beam> beams;        ///< [s]
-  std::vector<const Sky*> skies;  ///< [s], null = none
+  std::vector<Beam> beams;                   ///< [s]
+  std::vector<const Sky*> skies;             ///< [s], null = none
   std::vector<double> front, back, through;  ///< [material][b]
 };
 
@@ -123,7 +125,8 @@ Vec3 PathSampler::Impl::Beam::direction(double u, double v) const {
 }
 
 template <class Hit>
-void PathSampler::Impl::sun_at(const Vec3& p, std::uint32_t facet, const Vec3& n, double u, double v, std::uint64_t& count, Hit&& hit) const {
+void PathSampler::Impl::sun_at(const Vec3& p, std::uint32_t facet, const Vec3& n, double u, double v, std::uint64_t& count,
+                               Hit&& hit) const {
   for (std::size_t s = 0; s < states; ++s) {
     const Beam& beam = beams[s];
     if (!beam.sun) continue;
@@ -169,8 +172,8 @@ void PathSampler::Impl::walk(Vec3 p, Vec3 d, std::uint32_t facet, double* weight
   }
 }
 
-void PathSampler::Impl::one_side(const Vec3& start, const Vec3& direction, std::uint32_t facet, RandomStream& random, double* weight, double* sum,
-                                 double* direct, std::uint64_t& count) const {
+void PathSampler::Impl::one_side(const Vec3& start, const Vec3& direction, std::uint32_t facet, RandomStream& random, double* weight,
+                                 double* sum, double* direct, std::uint64_t& count) const {
   std::fill_n(weight, bands, 1.0);
   walk(
       start, direction, facet, weight, random, count,
@@ -199,9 +202,15 @@ void PathSampler::Impl::one_side(const Vec3& start, const Vec3& direction, std::
 PathSampler::PathSampler(const Scene& scene, const FacetScene& facets, const RayScene& rays, std::uint64_t seed)
     : impl_(std::make_unique<const Impl>(scene, facets, rays, seed)) {}
 PathSampler::~PathSampler() = default;
-std::size_t PathSampler::states() const { return impl_->states; }
-std::size_t PathSampler::bands() const { return impl_->bands; }
-bool PathSampler::has_sun() const { return impl_->has_sun; }
+std::size_t PathSampler::states() const {
+  return impl_->states;
+}
+std::size_t PathSampler::bands() const {
+  return impl_->bands;
+}
+bool PathSampler::has_sun() const {
+  return impl_->has_sun;
+}
 
 void PathSampler::Impl::add_paths(const SampleTarget& target, std::uint64_t stream, std::uint32_t count, SampleMeans& sums) const {
   std::vector<double> here(states * 2 * bands), weight(bands);
@@ -215,8 +224,8 @@ void PathSampler::Impl::add_paths(const SampleTarget& target, std::uint64_t stre
     std::fill(here.begin(), here.end(), 0.0);
     one_side(p, cosine_direction(n, sobol_owen(i, 2, scramble), sobol_owen(i, 3, scramble)), facet, random, weight.data(), here.data(),
              sums.direct.data(), sums.rays);
-    one_side(p, cosine_direction(-n, sobol_owen(i, 4, scramble), sobol_owen(i, 5, scramble)), facet, random, weight.data(), here.data() + bands,
-             sums.direct.data() + bands, sums.rays);
+    one_side(p, cosine_direction(-n, sobol_owen(i, 4, scramble), sobol_owen(i, 5, scramble)), facet, random, weight.data(),
+             here.data() + bands, sums.direct.data() + bands, sums.rays);
     for (std::size_t k = 0; k < here.size(); ++k) {
       sums.irradiance[k] += here[k];
       sums.absorbed[k / (2 * bands) * bands + k % bands] += absorptance(facet, k / bands % 2 == 0, k % bands) * here[k];
@@ -224,27 +233,30 @@ void PathSampler::Impl::add_paths(const SampleTarget& target, std::uint64_t stre
   }
 }
 
-void PathSampler::Impl::add_sun(const SampleTarget& target, std::uint64_t stream, std::uint32_t count, double share, SampleMeans& sums) const {
+void PathSampler::Impl::add_sun(const SampleTarget& target, std::uint64_t stream, std::uint32_t count, double share,
+                                SampleMeans& sums) const {
   const auto scramble = static_cast<std::uint32_t>(mix(stream, 0x73756eULL));
   for (std::uint32_t i = 0; i < count; ++i) {
     double x;
     const std::uint32_t facet = target.facet_at(sobol_owen(i, 0, scramble), x);
     const double root = std::sqrt(x), y = sobol_owen(i, 1, scramble);
     const Vec3 p = point(facet, root * (1.0 - y), root * y);
-    sun_at(p, facet, normal(facet), sobol_owen(i, 2, scramble), sobol_owen(i, 3, scramble), sums.rays, [&](std::size_t s, bool on_front, double factor) {
-      const std::size_t side = 2 * s + (on_front ? 0 : 1);
-      sums.sunlit[side] += share;
-      for (std::size_t b = 0; b < bands; ++b) {
-        const double light = share * factor * beams[s].sun->irradiance[b];
-        sums.irradiance[side * bands + b] += light;
-        sums.direct[side * bands + b] += light;
-        sums.absorbed[s * bands + b] += absorptance(facet, on_front, b) * light;
-      }
-    });
+    sun_at(p, facet, normal(facet), sobol_owen(i, 2, scramble), sobol_owen(i, 3, scramble), sums.rays,
+           [&](std::size_t s, bool on_front, double factor) {
+             const std::size_t side = 2 * s + (on_front ? 0 : 1);
+             sums.sunlit[side] += share;
+             for (std::size_t b = 0; b < bands; ++b) {
+               const double light = share * factor * beams[s].sun->irradiance[b];
+               sums.irradiance[side * bands + b] += light;
+               sums.direct[side * bands + b] += light;
+               sums.absorbed[s * bands + b] += absorptance(facet, on_front, b) * light;
+             }
+           });
   }
 }
 
-void PathSampler::sample(const SampleTarget& target, std::uint32_t randomisation, std::uint32_t count, std::uint32_t sun_points, SampleMeans& means) const {
+void PathSampler::sample(const SampleTarget& target, std::uint32_t randomisation, std::uint32_t count, std::uint32_t sun_points,
+                         SampleMeans& means) const {
   const Impl& my = *impl_;
   means.irradiance.assign(my.states * 2 * my.bands, 0.0);
   means.direct.assign(my.states * 2 * my.bands, 0.0);
@@ -267,12 +279,14 @@ PathSampler::Impl::Particles PathSampler::Impl::particles(std::uint32_t batch, s
   std::vector<double> weight(bands);
   // Sends one particle that stands for power[b] along the line that comes from direction d, through the point u, v of a disc that
   // holds the scene's shadow, or of the cell's top or bottom.
-  const auto send = [&](std::size_t s, const Vec3& d, double u, double v, double factor, const std::vector<double>& irradiance, RandomStream& random) {
+  const auto send = [&](std::size_t s, const Vec3& d, double u, double v, double factor, const std::vector<double>& irradiance,
+                        RandomStream& random) {
     Vec3 from;
     if (facets.periodic) {
       const auto& cell = *facets.periodic;
       const double margin = 1e-3 * (facets.bounds.size().z + cell.width());
-      from = {cell.x_low + u * cell.width(), cell.y_low + v * cell.depth(), d.z > 0.0 ? facets.bounds.high.z + margin : facets.bounds.low.z - margin};
+      from = {cell.x_low + u * cell.width(), cell.y_low + v * cell.depth(),
+              d.z > 0.0 ? facets.bounds.high.z + margin : facets.bounds.low.z - margin};
       factor *= cell.area() * std::abs(d.z);
     } else {
       Vec3 a, b;

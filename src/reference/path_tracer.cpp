@@ -64,7 +64,8 @@ class Block {
           variance_[(s * count + i) * bands_ + b] = static_cast<float>(variance);
           organ_variance[(s * facets_.organs.size() + facets_.organ[facet]) * bands_ + b] += area * area * variance;
           auto& balance = report.balance[s][b];
-          balance.incident += area * (mean(&SampleMeans::direct, 2 * s * bands_ + b) + mean(&SampleMeans::direct, (2 * s + 1) * bands_ + b));
+          balance.incident +=
+              area * (mean(&SampleMeans::direct, 2 * s * bands_ + b) + mean(&SampleMeans::direct, (2 * s + 1) * bands_ + b));
           (facet < facets_.plant_facets ? balance.leaves : balance.ground) += area * absorbed;
         }
       }
@@ -85,7 +86,8 @@ class Block {
 
 }  // namespace
 
-SolveReport trace_reference(const Scene& scene, const FacetScene& facets, const ReferenceSettings& settings, IrradianceSink& sink, Progress& progress) {
+SolveReport trace_reference(const Scene& scene, const FacetScene& facets, const ReferenceSettings& settings, IrradianceSink& sink,
+                            Progress& progress) {
   SolveReport report;
   report.method = "reference";
   const std::size_t states = scene.states.size(), bands = scene.band_count(), n = facets.size();
@@ -100,9 +102,10 @@ SolveReport trace_reference(const Scene& scene, const FacetScene& facets, const 
   Stopwatch tracing;
   const std::uint32_t samples = std::max<std::uint32_t>(1, (settings.samples + reference_randomisations - 1) / reference_randomisations);
   // Blocks of about 10^5 paths, so that the user is heard several times a second, and no more than some 10 MB of sums.
-  const std::size_t block_size = std::clamp<std::size_t>(
-      std::min<std::size_t>(65536 / (samples * reference_randomisations), (std::size_t{1} << 20) / (reference_randomisations * states * (5 * bands + 2))),
-      1, 4096);
+  const std::size_t block_size =
+      std::clamp<std::size_t>(std::min<std::size_t>(65536 / (samples * reference_randomisations),
+                                                    (std::size_t{1} << 20) / (reference_randomisations * states * (5 * bands + 2))),
+                              1, 4096);
   Block block(facets, sampler, std::min(block_size, n));
   std::vector<double> organ_variance(states * facets.organs.size() * bands, 0.0);
   std::uint64_t ray_count = 0;
@@ -120,13 +123,16 @@ SolveReport trace_reference(const Scene& scene, const FacetScene& facets, const 
   Stopwatch balancing;
   const std::size_t work = std::size_t{n} * samples;  // as many particles as a sixteenth of the paths, within bounds
   PathSampler::Escape escape;
-  arena.execute([&] { escape = sampler.escape_share(static_cast<std::uint32_t>(std::clamp<std::size_t>(work / (16 * states), 64, 4096))); });
+  arena.execute(
+      [&] { escape = sampler.escape_share(static_cast<std::uint32_t>(std::clamp<std::size_t>(work / (16 * states), 64, 4096))); });
   for (std::size_t s = 0; s < states; ++s)
     for (std::size_t b = 0; b < bands; ++b) report.balance[s][b].escaped = report.balance[s][b].incident * escape.share[s * bands + b];
   add_seconds(report.timings, "balance", balancing.seconds());
 
   report.organ_variance.absorbed.assign(organ_variance.begin(), organ_variance.end());
-  report.counts = {{"samples per facet", std::uint64_t{samples} * reference_randomisations}, {"rays", ray_count + escape.rays}, {"stacked pairs", rays.stacked_pairs()}};
+  report.counts = {{"samples per facet", std::uint64_t{samples} * reference_randomisations},
+                   {"rays", ray_count + escape.rays},
+                   {"stacked pairs", rays.stacked_pairs()}};
   report.memory = {{"tree of rays", rays.bytes()}, {"sums of organs", bytes_of(organ_variance)}};
   return report;
 }

@@ -14,8 +14,8 @@ constexpr std::uint32_t nothing = 0xffffffffu;
 
 /// What is nearest to the eye, for a strip of rows.
 struct DepthBuffer {
-  std::vector<float> depth;          ///< larger is nearer
-  std::vector<std::uint32_t> code;   ///< 2 * cell + (1 if the front faces the eye)
+  std::vector<float> depth;         ///< larger is nearer
+  std::vector<std::uint32_t> code;  ///< 2 * cell + (1 if the front faces the eye)
 };
 
 /// Of two coincident fragments, is the candidate in front? For facets i < j, j lies on the front side of i; cells rise with facets.
@@ -96,43 +96,45 @@ StripLists strips_of(const Surface& s, const Projection& p, int strip_rows, int 
   return lists;
 }
 
-void count_strip(const Surface& s, const Projection& p, bool from_below, const std::uint32_t* list, std::size_t triangles, int row_begin, int row_end,
-                 DepthBuffer& buffer, VisibleCounts& counts) {
+void count_strip(const Surface& s, const Projection& p, bool from_below, const std::uint32_t* list, std::size_t triangles, int row_begin,
+                 int row_end, DepthBuffer& buffer, VisibleCounts& counts) {
   const std::size_t pixels = static_cast<std::size_t>(row_end - row_begin) * p.columns;
   buffer.depth.assign(pixels, -std::numeric_limits<float>::max());
   buffer.code.assign(pixels, nothing);
   const float sign = from_below ? -1.0f : 1.0f;
   const auto tolerance = static_cast<float>(s.depth_tolerance * (p.wraps ? p.direction.z : 1.0));
-  rasterise(s, p, list, 0, triangles, row_begin, row_end, [&](const ProjectedTriangle& t, int row, int column, int count, float dx, float dy) {
-    const std::size_t first = static_cast<std::size_t>(row - row_begin) * p.columns + column;
-    const std::uint32_t base = s.first_cell[t.index], front = t.front_up != from_below ? 1u : 0u;
-    float* depth = buffer.depth.data() + first;
-    std::uint32_t* code = buffer.code.data() + first;
-    const auto depth_at = [&t, dx, dy, sign](int i) { return sign * t.depth_at(dx + static_cast<float>(i), dy); };
-    if (t.split == 1) {
-      counts.all[base] += static_cast<float>(count);
-      draw_run(count, tolerance, depth, code, depth_at, [c = 2 * base + front](int) { return c; });
-      return;
-    }
-    constexpr int chunk = 64;
-    for (int begin = 0; begin < count; begin += chunk) {
-      const int n = std::min(chunk, count - begin);
-      alignas(64) std::uint32_t codes[chunk];
-      const float x0 = dx + static_cast<float>(begin), u0 = t.u.at(x0, dy), v0 = t.v.at(x0, dy), du = t.u.per_x, dv = t.v.per_x;
-      const int split = t.split;
-      for (int i = 0; i < n; ++i) {
-        const auto x = static_cast<float>(i);
-        codes[i] = 2 * (base + cell_of(u0 + x * du, v0 + x * dv, split)) + front;
-      }
-      for (int i = 0; i < n;) {
-        int end = i + 1;
-        while (end < n && codes[end] == codes[i]) ++end;
-        counts.all[codes[i] >> 1] += static_cast<float>(end - i);
-        i = end;
-      }
-      draw_run(n, tolerance, depth + begin, code + begin, [&](int i) { return depth_at(begin + i); }, [&codes](int i) { return codes[i]; });
-    }
-  });
+  rasterise(
+      s, p, list, 0, triangles, row_begin, row_end, [&](const ProjectedTriangle& t, int row, int column, int count, float dx, float dy) {
+        const std::size_t first = static_cast<std::size_t>(row - row_begin) * p.columns + column;
+        const std::uint32_t base = s.first_cell[t.index], front = t.front_up != from_below ? 1u : 0u;
+        float* depth = buffer.depth.data() + first;
+        std::uint32_t* code = buffer.code.data() + first;
+        const auto depth_at = [&t, dx, dy, sign](int i) { return sign * t.depth_at(dx + static_cast<float>(i), dy); };
+        if (t.split == 1) {
+          counts.all[base] += static_cast<float>(count);
+          draw_run(count, tolerance, depth, code, depth_at, [c = 2 * base + front](int) { return c; });
+          return;
+        }
+        constexpr int chunk = 64;
+        for (int begin = 0; begin < count; begin += chunk) {
+          const int n = std::min(chunk, count - begin);
+          alignas(64) std::uint32_t codes[chunk];
+          const float x0 = dx + static_cast<float>(begin), u0 = t.u.at(x0, dy), v0 = t.v.at(x0, dy), du = t.u.per_x, dv = t.v.per_x;
+          const int split = t.split;
+          for (int i = 0; i < n; ++i) {
+            const auto x = static_cast<float>(i);
+            codes[i] = 2 * (base + cell_of(u0 + x * du, v0 + x * dv, split)) + front;
+          }
+          for (int i = 0; i < n;) {
+            int end = i + 1;
+            while (end < n && codes[end] == codes[i]) ++end;
+            counts.all[codes[i] >> 1] += static_cast<float>(end - i);
+            i = end;
+          }
+          draw_run(
+              n, tolerance, depth + begin, code + begin, [&](int i) { return depth_at(begin + i); }, [&codes](int i) { return codes[i]; });
+        }
+      });
   for (std::size_t q = 0; q < pixels;) {
     const std::uint32_t code = buffer.code[q];
     std::size_t end = q + 1;
@@ -155,8 +157,8 @@ void count_visible(const Surface& surface, const Projection& projection, bool fr
   } else {
     const StripLists lists = strips_of(surface, projection, strip_rows, strips);
     for (int i = 0; i < strips; ++i)
-      count_strip(surface, projection, from_below, lists.triangle.data() + lists.start[i], lists.start[i + 1] - lists.start[i], i * strip_rows,
-                  std::min(projection.rows, (i + 1) * strip_rows), buffer, counts);
+      count_strip(surface, projection, from_below, lists.triangle.data() + lists.start[i], lists.start[i + 1] - lists.start[i],
+                  i * strip_rows, std::min(projection.rows, (i + 1) * strip_rows), buffer, counts);
   }
   for (const auto& o : outside_focus(surface, projection)) {
     counts.all[o.cell] += o.lines;

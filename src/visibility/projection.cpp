@@ -122,12 +122,14 @@ std::vector<OutsideArea> outside_focus(const Surface& surface, const Projection&
       c[i] = {glm::dot(p.x_row, q) + p.x0, glm::dot(p.y_row, q) + p.y0, 0.0};
     }
     const Vec3 eu = (c[1] - c[0]) / static_cast<double>(k), ev = (c[2] - c[0]) / static_cast<double>(k);
-    const bool front_up = surface.normal[0][t] * p.direction.x + surface.normal[1][t] * p.direction.y + surface.normal[2][t] * p.direction.z > 0;
+    const bool front_up =
+        surface.normal[0][t] * p.direction.x + surface.normal[1][t] * p.direction.y + surface.normal[2][t] * p.direction.z > 0;
     const double whole = 0.5 * std::fabs(eu.x * ev.y - eu.y * ev.x);
     const Vec3 low = glm::min(glm::min(c[0], c[1]), c[2]), high = glm::max(glm::max(c[0], c[1]), c[2]);
     if (low.x >= 0.0 && low.y >= 0.0 && high.x <= p.columns && high.y <= p.rows) continue;
     if (high.x <= 0.0 || high.y <= 0.0 || low.x >= p.columns || low.y >= p.rows) {
-      for (std::uint32_t cell = surface.first_cell[t]; cell < surface.first_cell[t + 1]; ++cell) outside.push_back({cell, static_cast<float>(whole), front_up});
+      for (std::uint32_t cell = surface.first_cell[t]; cell < surface.first_cell[t + 1]; ++cell)
+        outside.push_back({cell, static_cast<float>(whole), front_up});
       continue;
     }
     for (int j = 0; j < k; ++j)
@@ -137,10 +139,12 @@ std::vector<OutsideArea> outside_focus(const Surface& surface, const Projection&
           const Vec3 a = upper ? base + eu + ev : base, b = base + eu, e = base + ev;
           Polygon polygon;
           for (const auto& q : {a, b, e}) polygon.add(q.x, q.y);
-          const double inside = polygon.clipped(true, 0.0, 1.0).clipped(true, p.columns, -1.0).clipped(false, 0.0, 1.0).clipped(false, p.rows, -1.0).area();
+          const double inside =
+              polygon.clipped(true, 0.0, 1.0).clipped(true, p.columns, -1.0).clipped(false, 0.0, 1.0).clipped(false, p.rows, -1.0).area();
           const double lines = whole - inside;
           if (lines > 1e-9 * whole)
-            outside.push_back({surface.first_cell[t] + static_cast<std::uint32_t>(j * (2 * k - j) + 2 * i + upper), static_cast<float>(lines), front_up});
+            outside.push_back(
+                {surface.first_cell[t] + static_cast<std::uint32_t>(j * (2 * k - j) + 2 * i + upper), static_cast<float>(lines), front_up});
         }
   }
   return outside;

@@ -18,12 +18,12 @@ struct ScreenPlane {
 
 /// One projected triangle, with what its spans need. Offsets are in pixels from its corner 0.
 struct ProjectedTriangle {
-  std::uint32_t index;    ///< row of the surface
-  bool front_up;          ///< the front faces the direction
+  std::uint32_t index;  ///< row of the surface
+  bool front_up;        ///< the front faces the direction
   int split;
   ScreenPlane depth;
   float depth_low, depth_high;
-  ScreenPlane u, v;       ///< barycentric coordinates of corners 1 and 2
+  ScreenPlane u, v;  ///< barycentric coordinates of corners 1 and 2
 
   float depth_at(float dx, float dy) const { return std::min(std::max(depth.at(dx, dy), depth_low), depth_high); }
 };
@@ -33,7 +33,8 @@ struct ProjectedTriangle {
 /// 0. In periodic scenes rows and columns are taken modulo the grid and runs are cut at its edge. Rows outside [row_begin, row_end)
 /// are skipped.
 template <class Span>
-void rasterise(const Surface& s, const Projection& p, const std::uint32_t* list, std::size_t begin, std::size_t end, int row_begin, int row_end, Span&& span) {
+void rasterise(const Surface& s, const Projection& p, const std::uint32_t* list, std::size_t begin, std::size_t end, int row_begin,
+               int row_end, Span&& span) {
   constexpr int block = 16;
   const auto f = [](double x) { return static_cast<float>(x); };
   const float xx = f(p.x_row.x), xy = f(p.x_row.y), xz = f(p.x_row.z), x0 = f(p.x0);

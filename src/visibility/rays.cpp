@@ -18,8 +18,8 @@ namespace sunfleck {
 
 namespace {
 
-constexpr double slack = 1e-6;            // how far parts of a ray overlap at borders, in units of the scene's size
-constexpr double least_slope = 1e-6;      // of rays in periodic scenes
+constexpr double slack = 1e-6;        // how far parts of a ray overlap at borders, in units of the scene's size
+constexpr double least_slope = 1e-6;  // of rays in periodic scenes
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// Which image of a cell or facet: moved by (x width, y depth).
@@ -49,7 +49,7 @@ struct Query : RTCIntersectContext {
 struct RayScene::Impl {
   explicit Impl(const FacetScene& s);
 
-  void place();                 ///< origin, scale, cell, range of heights
+  void place();  ///< origin, scale, cell, range of heights
   void list_primitives();
   void find_stacks();
   void build();
@@ -72,12 +72,12 @@ struct RayScene::Impl {
 
   const FacetScene& scene;
   Vec3 origin{0.0};
-  double scale = 1.0;                     // a power of two, so that the scale of a scene changes no rounding
+  double scale = 1.0;  // a power of two, so that the scale of a scene changes no rounding
   bool periodic = false;
-  double width = 0, depth = 0;            // of the cell, in local units; the cell begins at local (0, 0)
-  Box box;                                // of the geometry, in local units
-  std::vector<std::uint32_t> facet_of;    // per primitive; empty if primitive = facet row
-  std::vector<Image> image_of;            // per primitive, periodic scenes only: the facet's image that was moved into the cell
+  double width = 0, depth = 0;          // of the cell, in local units; the cell begins at local (0, 0)
+  Box box;                              // of the geometry, in local units
+  std::vector<std::uint32_t> facet_of;  // per primitive; empty if primitive = facet row
+  std::vector<Image> image_of;          // per primitive, periodic scenes only: the facet's image that was moved into the cell
   std::unordered_map<std::uint32_t, std::vector<Neighbour>> stacks;
   std::size_t pairs = 0;
   std::atomic<std::int64_t> held{0};
@@ -181,8 +181,10 @@ void RayScene::Impl::build() {
   const std::size_t n = facet_of.size();
   if (n > 0) {
     RTCGeometry geometry = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
-    auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), 3 * n));
-    auto* indices = static_cast<unsigned*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned), n));
+    auto* vertices =
+        static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), 3 * n));
+    auto* indices =
+        static_cast<unsigned*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned), n));
     if (!vertices || !indices) {
       rtcReleaseGeometry(geometry);
       throw Error("not enough memory for the geometry of " + std::to_string(n) + " facets");
@@ -368,6 +370,8 @@ std::size_t RayScene::bytes() const {
          impl_->image_of.capacity() * sizeof(Image);
 }
 
-std::size_t RayScene::stacked_pairs() const { return impl_->pairs; }
+std::size_t RayScene::stacked_pairs() const {
+  return impl_->pairs;
+}
 
 }  // namespace sunfleck

@@ -8,9 +8,9 @@ namespace sunfleck {
 
 namespace {
 
-constexpr double plane_tolerance = 4e-7;   // six times the spacing of floats at 1
-constexpr double normal_tolerance = 1e-6;  // [rad]
-constexpr double overlap_tolerance = 1e-7; // neighbours that share an edge do not overlap
+constexpr double plane_tolerance = 4e-7;    // six times the spacing of floats at 1
+constexpr double normal_tolerance = 1e-6;   // [rad]
+constexpr double overlap_tolerance = 1e-7;  // neighbours that share an edge do not overlap
 
 using Vec2 = glm::dvec2;
 
@@ -69,8 +69,11 @@ class Finder {
         grid(run);
       begin = next;
     }
-    std::sort(pairs_.begin(), pairs_.end(), [](const auto& a, const auto& b) { return a.first != b.first ? a.first < b.first : a.second < b.second; });
-    pairs_.erase(std::unique(pairs_.begin(), pairs_.end(), [](const auto& a, const auto& b) { return a.first == b.first && a.second == b.second; }), pairs_.end());
+    std::sort(pairs_.begin(), pairs_.end(),
+              [](const auto& a, const auto& b) { return a.first != b.first ? a.first < b.first : a.second < b.second; });
+    pairs_.erase(
+        std::unique(pairs_.begin(), pairs_.end(), [](const auto& a, const auto& b) { return a.first == b.first && a.second == b.second; }),
+        pairs_.end());
     return std::move(pairs_);
   }
 
@@ -133,7 +136,9 @@ Vec3 upward_normal(const Triangle& t) {
   return up ? n : -n;
 }
 
-std::vector<StackedPair> find_stacked(std::span<const StackCandidate> candidates) { return Finder(candidates).run(); }
+std::vector<StackedPair> find_stacked(std::span<const StackCandidate> candidates) {
+  return Finder(candidates).run();
+}
 
 bool barycentric(const Triangle& t, const Vec3& p, double& u, double& v) {
   const Vec3 e = t[1] - t[0], f = t[2] - t[0], n = glm::cross(e, f), q = p - t[0];

@@ -13,7 +13,8 @@ std::size_t Surface::bytes() const {
   return total;
 }
 
-Surface make_surface(const FacetScene& scene, const std::vector<std::uint32_t>& order, const std::vector<std::uint16_t>& split, bool ground_is_flat) {
+Surface make_surface(const FacetScene& scene, const std::vector<std::uint32_t>& order, const std::vector<std::uint16_t>& split,
+                     bool ground_is_flat) {
   Surface s;
   const std::size_t n = order.size();
   s.origin = scene.bounds.empty() ? Vec3{0.0} : scene.bounds.centre();

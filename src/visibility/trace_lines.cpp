@@ -26,15 +26,17 @@ bool coincident_above(const Fragment& b, const Fragment& a) {
 void trace_lines(const Surface& surface, const Projection& p, LineBundle& bundle) {
   thread_local std::vector<Fragment> found, sorted;
   found.clear();
-  rasterise(surface, p, nullptr, 0, surface.size(), 0, p.rows, [&](const ProjectedTriangle& t, int row, int column, int count, float dx, float dy) {
-    const std::uint32_t base = surface.first_cell[t.index], facet = 2 * t.index + (t.front_up ? 1u : 0u);
-    const auto pixel = static_cast<std::uint32_t>(row) * static_cast<std::uint32_t>(p.columns) + static_cast<std::uint32_t>(column);
-    for (int i = 0; i < count; ++i) {
-      const float x = dx + static_cast<float>(i);
-      const std::uint32_t cell = t.split == 1 ? base : base + cell_of(t.u.at(x, dy), t.v.at(x, dy), t.split);
-      found.push_back({pixel + static_cast<std::uint32_t>(i), facet, cell, t.depth_at(x, dy)});
-    }
-  });
+  rasterise(surface, p, nullptr, 0, surface.size(), 0, p.rows,
+            [&](const ProjectedTriangle& t, int row, int column, int count, float dx, float dy) {
+              const std::uint32_t base = surface.first_cell[t.index], facet = 2 * t.index + (t.front_up ? 1u : 0u);
+              const auto pixel =
+                  static_cast<std::uint32_t>(row) * static_cast<std::uint32_t>(p.columns) + static_cast<std::uint32_t>(column);
+              for (int i = 0; i < count; ++i) {
+                const float x = dx + static_cast<float>(i);
+                const std::uint32_t cell = t.split == 1 ? base : base + cell_of(t.u.at(x, dy), t.v.at(x, dy), t.split);
+                found.push_back({pixel + static_cast<std::uint32_t>(i), facet, cell, t.depth_at(x, dy)});
+              }
+            });
   const std::size_t pixels = static_cast<std::size_t>(p.columns) * p.rows;
   bundle.start.assign(pixels + 2, 0);
   for (const auto& f : found) ++bundle.start[f.pixel + 2];

@@ -37,7 +37,8 @@ constexpr std::uint64_t ray_stream = 0x6a09e667f3bcc909ULL;
 double cpu_seconds() {
   rusage use{};
   getrusage(RUSAGE_SELF, &use);
-  return static_cast<double>(use.ru_utime.tv_sec + use.ru_stime.tv_sec) + 1e-6 * static_cast<double>(use.ru_utime.tv_usec + use.ru_stime.tv_usec);
+  return static_cast<double>(use.ru_utime.tv_sec + use.ru_stime.tv_sec) +
+         1e-6 * static_cast<double>(use.ru_utime.tv_usec + use.ru_stime.tv_usec);
 }
 
 /// Wall and CPU seconds since it was made.
@@ -68,7 +69,8 @@ double direct_on(const Problem& p, std::uint32_t cell, std::uint32_t side, std::
   const auto& d = p.direct;
   const std::size_t cell_side = 2 * std::size_t{cell} + side;
   double e = 0;
-  if (const auto k = d.sky_of_state[0]; k != DirectLight::none) e += p.scene.states[0].sky->irradiance[band] * static_cast<double>(d.sky[k][cell_side]);
+  if (const auto k = d.sky_of_state[0]; k != DirectLight::none)
+    e += p.scene.states[0].sky->irradiance[band] * static_cast<double>(d.sky[k][cell_side]);
   if (const auto k = d.sun_of_state[0]; k != DirectLight::none) {
     const double cosine = static_cast<double>(d.sun_cosine[k][p.elements.row_of_cell[cell]]) * (side == 0 ? 1.0 : -1.0);
     e += p.scene.states[0].sun->irradiance[band] * std::max(0.0, cosine) * static_cast<double>(d.sunlit[k][cell_side]);
@@ -162,7 +164,8 @@ std::array<HalfLinks, 2> ray_links(const Problem& p, const RayScene& rays, std::
           std::uint32_t end = d.z > 0.0 ? up : down;
           if (hit) {
             const auto t = row_of_facet[hit.facet];
-            const auto cell = e.surface.first_cell[t] + cell_of(static_cast<float>(hit.u), static_cast<float>(hit.v), std::max<int>(1, e.surface.split[t]));
+            const auto cell = e.surface.first_cell[t] +
+                              cell_of(static_cast<float>(hit.u), static_cast<float>(hit.v), std::max<int>(1, e.surface.split[t]));
             end = 2 * e.element_of_cell[cell] + (hit.front ? 0 : 1);
           }
           met[r % 2][(2 * std::size_t{i} + side) * (per_side / 2) + r / 2] = end;
@@ -208,7 +211,8 @@ Absorbed solve(const Problem& p, const std::array<HalfLinks, 2>& half) {
   const std::size_t bands = p.facets.bands, sides = 2 * e.size(), values = sides * bands;
   ClusterFields unused;  // there are no clusters
   std::vector<Gather> gather;
-  for (const auto& h : half) gather.emplace_back(h, nullptr, p.direct.sky_seen.empty() ? std::vector<float>(sides, 0.0f) : h.open_up, bands, unused);
+  for (const auto& h : half)
+    gather.emplace_back(h, nullptr, p.direct.sky_seen.empty() ? std::vector<float>(sides, 0.0f) : h.open_up, bands, unused);
   const Reflection reflection(p.facets, e.material, 1);
   Field b(values), source = p.source;
   source.insert(source.end(), p.source.begin(), p.source.end());
@@ -240,8 +244,10 @@ Absorbed solve(const Problem& p, const std::array<HalfLinks, 2>& half) {
     out.area[e.organ_of_row[t]] += a;
     for (std::uint32_t side = 0; side < 2; ++side)
       for (std::size_t band = 0; band < bands; ++band) {
-        const double kept = 1.0 - static_cast<double>(side == 0 ? m.reflectance_front[band] : m.reflectance_back[band]) - static_cast<double>(m.transmittance[band]);
-        const double light = direct_on(p, cell, side, band) + rest_on(p, cell, side) * static_cast<double>(gathered[(2 * e.element_of_cell[cell] + side) * bands + band]);
+        const double kept = 1.0 - static_cast<double>(side == 0 ? m.reflectance_front[band] : m.reflectance_back[band]) -
+                            static_cast<double>(m.transmittance[band]);
+        const double light = direct_on(p, cell, side, band) +
+                             rest_on(p, cell, side) * static_cast<double>(gathered[(2 * e.element_of_cell[cell] + side) * bands + band]);
         out.power[e.organ_of_row[t] * bands + band] += a * kept * light;
       }
   }
@@ -265,7 +271,8 @@ Error error_of(const Absorbed& x, const Absorbed& r, std::size_t bands, std::siz
   return {100.0 * std::sqrt(square * area) / mean, 100.0 * difference / mean};
 }
 
-void row(const Problem& p, const std::string& name, double samples, const Clock& counting, const std::array<HalfLinks, 2>& half, const Absorbed& truth) {
+void row(const Problem& p, const std::string& name, double samples, const Clock& counting, const std::array<HalfLinks, 2>& half,
+         const Absorbed& truth) {
   const double cpu = counting.cpu(), wall = counting.wall.seconds();
   const Clock solving;
   const auto x = solve(p, half);
@@ -300,7 +307,10 @@ void run(const std::string& file, std::uint32_t most) {
     heads += fmt::format(" {} error (bias) % |", band);
     rule += "---|";
   }
-  fmt::print("| factors from | 10^6 samples | CPU s | wall s | 10^6 samples per CPU s | 10^6 links | solve CPU s |{}\n|---|---|---|---|---|---|---|{}\n", heads, rule);
+  fmt::print(
+      "| factors from | 10^6 samples | CPU s | wall s | 10^6 samples per CPU s | 10^6 links | solve CPU s "
+      "|{}\n|---|---|---|---|---|---|---|{}\n",
+      heads, rule);
   for (std::uint32_t directions = 8; directions <= 2 * most; directions *= 2) {
     const Clock clock;
     const auto half = traced(p, directions, 1, samples);
@@ -321,7 +331,8 @@ void run(const std::string& file, std::uint32_t most) {
 
 int main(int argc, char** argv) {
   try {
-    run(argc > 1 ? argv[1] : SUNFLECK_SOURCE_DIR "/plants/poplar_scene.toml", argc > 2 ? static_cast<std::uint32_t>(std::atoi(argv[2])) : 128);
+    run(argc > 1 ? argv[1] : SUNFLECK_SOURCE_DIR "/plants/poplar_scene.toml",
+        argc > 2 ? static_cast<std::uint32_t>(std::atoi(argv[2])) : 128);
     return 0;
   } catch (const std::exception& error) {
     fmt::print(stderr, "bench_lines_against_rays: {}\n", error.what());

@@ -153,7 +153,8 @@ TEST_CASE("Placements that cannot be", "[hostile][scene]") {
   CHECK(place("place = [ { grid = { step = [1, 1], count = [0, 1] } } ]\n") ==
         "scene.toml:9: plant[0].place[0].grid.count[0]: found 0; expected a whole number from 1 to 1000000");
   CHECK(place("place = [ { grid = { step = [1, 1], count = [100000, 100000] } } ]\n") ==
-        "scene.toml:9: plant[0].place[0].grid.count: found 10000000000 copies; expected at most 10000000 in one grid (a group may hold many)");
+        "scene.toml:9: plant[0].place[0].grid.count: found 10000000000 copies; expected at most 10000000 in one grid (a group may hold "
+        "many)");
   CHECK(place("place = [ { grid = { step = [1, 1], count = [1, 1], turn = \"rand\" } } ]\n") ==
         "scene.toml:9: plant[0].place[0].grid.turn: found \"rand\"; expected a number of degrees, or \"random\"");
   CHECK(place("place = [ { grid = { step = [1, 1], count = [1, 1], seed = 2 } } ]\n") ==

@@ -65,11 +65,13 @@ Counts count_lines(const std::vector<Mesh>& surfaces, std::uint32_t directions, 
   for (const auto& half : links.half)
     for (std::size_t i = 0; i < organ_side.size(); ++i) {
       if (i % 2 == 0) out.lines[organ_side[i] / 2] += half.lines[i];
-      for (auto k = half.near.start[i]; k < half.near.start[i + 1]; ++k) out.count[organ_side[i]][organ_side[half.near.column[k]]] += half.near.count[k];
+      for (auto k = half.near.start[i]; k < half.near.start[i + 1]; ++k)
+        out.count[organ_side[i]][organ_side[half.near.column[k]]] += half.near.count[k];
     }
   return out;
 }
-Counts count_lines(const std::vector<Mesh>& surfaces, std::uint32_t directions, double lines_per_surface, std::uint64_t first_seed, std::uint64_t seeds) {
+Counts count_lines(const std::vector<Mesh>& surfaces, std::uint32_t directions, double lines_per_surface, std::uint64_t first_seed,
+                   std::uint64_t seeds) {
   Counts sum;
   for (std::uint64_t k = 0; k < seeds; ++k) sum.add(count_lines(surfaces, directions, lines_per_surface, first_seed + k));
   return sum;
@@ -80,8 +82,8 @@ struct Pair {
   Polygon a, b;
   double factor;
 };
-// Narayanaswamy 2015, Int. J. Heat Mass Transfer 91: examples of the closed form for two polygons. ex1 and ex3 are faces of a cube, here with
-// more digits.
+// Narayanaswamy 2015, Int. J. Heat Mass Transfer 91: examples of the closed form for two polygons. ex1 and ex3 are faces of a cube, here
+// with more digits.
 const std::vector<Pair>& polygon_pairs() {
   static const Polygon unit{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
   static const std::vector<Pair> pairs{
@@ -96,9 +98,13 @@ const std::vector<Pair>& polygon_pairs() {
   return pairs;
 }
 
-double allowed(double factor) { return std::max(0.002 * factor, 2e-5); }
+double allowed(double factor) {
+  return std::max(0.002 * factor, 2e-5);
+}
 
-Polygon rectangle(double a, double b, double z) { return {{0, 0, z}, {a, 0, z}, {a, b, z}, {0, b, z}}; }
+Polygon rectangle(double a, double b, double z) {
+  return {{0, 0, z}, {a, 0, z}, {a, b, z}, {0, b, z}};
+}
 
 }  // namespace
 
@@ -128,7 +134,8 @@ TEST_CASE("radiosity: view factors of facing rectangles and coaxial discs") {
     constexpr int corners = 96;
     const double r = radius * std::sqrt(std::numbers::pi / (0.5 * corners * std::sin(2 * std::numbers::pi / corners)));
     Polygon p;
-    for (int i = 0; i < corners; ++i) p.push_back({r * std::cos(2 * std::numbers::pi * i / corners), r * std::sin(2 * std::numbers::pi * i / corners), z});
+    for (int i = 0; i < corners; ++i)
+      p.push_back({r * std::cos(2 * std::numbers::pi * i / corners), r * std::sin(2 * std::numbers::pi * i / corners), z});
     return fan(p);
   };
   check(disc(1, 0), disc(1, 1), 0.38196601);

@@ -63,7 +63,8 @@ TEST_CASE("reference: a closed cavity that emits everywhere") {
   sky(scene, SkyModel::sphere, 1);
   const Vec3 p[8] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
   const auto face = [&](int a, int b, int c, int d) { return Mesh{{p[a], p[b], p[c], p[d]}, {{0, 1, 2}, {0, 2, 3}}}; };
-  add(scene, "walls", {face(0, 3, 2, 1), face(4, 5, 6, 7), face(0, 1, 5, 4), face(1, 2, 6, 5), face(2, 3, 7, 6), face(3, 0, 4, 7)}, 0);  // fronts outside
+  add(scene, "walls", {face(0, 3, 2, 1), face(4, 5, 6, 7), face(0, 1, 5, 4), face(1, 2, 6, 5), face(2, 3, 7, 6), face(3, 0, 4, 7)},
+      0);  // fronts outside
   const auto run = trace(scene, 4096);
   for (std::size_t f = 0; f < 12; ++f) {
     CHECK(run.kept.on(f, 0) == Approx(1).epsilon(1e-6));

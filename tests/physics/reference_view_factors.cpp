@@ -34,7 +34,9 @@ Received from_plate(double a, double b, double z, const Mesh& plate) {
   return out;
 }
 
-Mesh rectangle(double a, double b) { return {{{0, 0, 0}, {a, 0, 0}, {a, b, 0}, {0, b, 0}}, {{0, 1, 2}, {0, 2, 3}}}; }
+Mesh rectangle(double a, double b) {
+  return {{{0, 0, 0}, {a, 0, 0}, {a, b, 0}, {0, b, 0}}, {{0, 1, 2}, {0, 2, 3}}};
+}
 
 }  // namespace
 

@@ -69,7 +69,8 @@ TEST_CASE("what a scene has is planned", "[cli][plan]") {
 TEST_CASE("a method leaves out what it does not do", "[cli][plan]") {
   Scene scene = one_triangle();
   scene.optics[0].transmittance[0] = 0.1f;
-  CHECK(item(make_plan(scene, {"direct", Quality::standard}, silent()), "scattering").why == "method 'direct' stops at the light that arrives first");
+  CHECK(item(make_plan(scene, {"direct", Quality::standard}, silent()), "scattering").why ==
+        "method 'direct' stops at the light that arrives first");
   CHECK_FALSE(item(make_plan(scene, {"direct", Quality::standard}, silent()), "transmission").done);
   CHECK_FALSE(item(make_plan(scene, {"reference", Quality::standard}, silent()), "certificate").done);
 }

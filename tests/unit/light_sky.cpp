@@ -70,7 +70,9 @@ TEST_CASE("the clear sky follows CIE S 011 type 12") {
   sky.sun = direction_from_angles(40.0, 90.0);
   prepare_sky(sky, "sky");
   // ratio of the zenith to the point opposite the sun at 40 degrees elevation, from the formula by hand
-  const auto f = [](double chi) { return 1 + 10 * (std::exp(-3 * chi) - std::exp(-1.5 * std::numbers::pi)) + 0.45 * std::cos(chi) * std::cos(chi); };
+  const auto f = [](double chi) {
+    return 1 + 10 * (std::exp(-3 * chi) - std::exp(-1.5 * std::numbers::pi)) + 0.45 * std::cos(chi) * std::cos(chi);
+  };
   const double degree = std::numbers::pi / 180;
   const double expected = f(50 * degree) * (1 - std::exp(-0.32)) / (f(100 * degree) * (1 - std::exp(-0.32 / std::sin(40 * degree))));
   CHECK(sky.relative_radiance({0, 0, 1}) / sky.relative_radiance(direction_from_angles(40.0, 270.0)) == Approx(expected).epsilon(1e-12));
@@ -80,8 +82,9 @@ TEST_CASE("the clear sky follows CIE S 011 type 12") {
 TEST_CASE("a clear sky needs a sun above the horizon") {
   Sky sky;
   sky.model = SkyModel::clear;
-  CHECK_THROWS_WITH(prepare_sky(sky, "s.toml:4: sky.model"),
-                    "s.toml:4: sky.model: found a clear sky without a sun; expected a sun above the horizon, about which the clear sky is built");
+  CHECK_THROWS_WITH(
+      prepare_sky(sky, "s.toml:4: sky.model"),
+      "s.toml:4: sky.model: found a clear sky without a sun; expected a sun above the horizon, about which the clear sky is built");
   sky.sun = Vec3{1, 0, 0};
   CHECK_THROWS_AS(prepare_sky(sky, "sky"), InputError);
 }

@@ -37,7 +37,9 @@ std::uint64_t figure(const Figures& figures, const std::string& name) {
 }
 
 /// Approximately the figure that a solve reports.
-Approx about(std::uint64_t reported, double tolerance) { return Approx(static_cast<double>(reported)).epsilon(tolerance); }
+Approx about(std::uint64_t reported, double tolerance) {
+  return Approx(static_cast<double>(reported)).epsilon(tolerance);
+}
 
 void check_prediction(const Scene& scene, RadiositySettings settings) {
   const FacetScene facets = expand(scene);
@@ -74,9 +76,15 @@ void check_prediction(const Scene& scene, RadiositySettings settings) {
 
 TEST_CASE("a plan predicts what a solve takes", "[radiosity][plan]") {
   RadiositySettings settings;
-  SECTION("periodic, sun and sky") { check_prediction(canopy(true, 400, true, true), settings); }
-  SECTION("finite, sun and sky") { check_prediction(canopy(false, 400, true, true), settings); }
-  SECTION("sun alone") { check_prediction(canopy(true, 200, true, false), settings); }
+  SECTION("periodic, sun and sky") {
+    check_prediction(canopy(true, 400, true, true), settings);
+  }
+  SECTION("finite, sun and sky") {
+    check_prediction(canopy(false, 400, true, true), settings);
+  }
+  SECTION("sun alone") {
+    check_prediction(canopy(true, 200, true, false), settings);
+  }
   SECTION("sky alone, draft") {
     settings.density = density_of(Quality::draft);
     check_prediction(canopy(true, 200, false, true), settings);

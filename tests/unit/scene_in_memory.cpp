@@ -138,6 +138,5 @@ TEST_CASE("Groups in memory may not hold themselves or what is not there", "[sce
   // A chain too long to walk.
   scene.groups.assign(2000, scene.groups[0]);
   for (std::uint32_t g = 0; g + 1 < 2000; ++g) scene.groups[g].members = {{true, g + 1, placed({})}};
-  CHECK(refusal(scene) ==
-        "scene in memory: group[0]: found more than 1000 groups inside each other; expected fewer levels");
+  CHECK(refusal(scene) == "scene in memory: group[0]: found more than 1000 groups inside each other; expected fewer levels");
 }

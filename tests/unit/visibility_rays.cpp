@@ -30,8 +30,12 @@ FacetScene facets(const std::vector<Triangle>& triangles, std::optional<Periodic
   return scene;
 }
 
-Triangle flat(double z, double x = 0, double y = 0, double size = 1) { return {Vec3{x, y, z}, Vec3{x + size, y, z}, Vec3{x, y + size, z}}; }
-Triangle flipped(const Triangle& t) { return {t[0], t[2], t[1]}; }
+Triangle flat(double z, double x = 0, double y = 0, double size = 1) {
+  return {Vec3{x, y, z}, Vec3{x + size, y, z}, Vec3{x, y + size, z}};
+}
+Triangle flipped(const Triangle& t) {
+  return {t[0], t[2], t[1]};
+}
 
 std::vector<Triangle> leaves(int n, double extent, double size, std::uint64_t seed) {
   RandomStream random(seed);
@@ -117,7 +121,8 @@ TEST_CASE("facets that lie on each other have one order for all rays") {
 }
 
 TEST_CASE("a leaf on the ground hides the ground only where it lies") {
-  auto scene = facets({flat(0, 0.2, 0.2, 0.2), {Vec3{0, 0, 0}, Vec3{1, 0, 0}, Vec3{1, 1, 0}}, {Vec3{0, 0, 0}, Vec3{1, 1, 0}, Vec3{0, 1, 0}}});
+  auto scene =
+      facets({flat(0, 0.2, 0.2, 0.2), {Vec3{0, 0, 0}, Vec3{1, 0, 0}, Vec3{1, 1, 0}}, {Vec3{0, 0, 0}, Vec3{1, 1, 0}, Vec3{0, 1, 0}}});
   const RayScene rays(scene);
   CHECK(rays.stacked_pairs() == 2);
   CHECK(rays.first_hit({0.25, 0.26, 1}, {0, 0, -1}).facet == 2);  // rows decide: the ground has the higher row here
@@ -229,7 +234,8 @@ TEST_CASE("periodic: level rays end, far cells are reached, a facet sees its own
 }
 
 TEST_CASE("periodic: a ground that fills the cell has no gaps, on borders neither") {
-  const auto scene = facets({{Vec3{0, 0, 0}, Vec3{1, 0, 0}, Vec3{1, 1, 0}}, {Vec3{0, 0, 0}, Vec3{1, 1, 0}, Vec3{0, 1, 0}}}, PeriodicCell{0, 0, 1, 1});
+  const auto scene =
+      facets({{Vec3{0, 0, 0}, Vec3{1, 0, 0}, Vec3{1, 1, 0}}, {Vec3{0, 0, 0}, Vec3{1, 1, 0}, Vec3{0, 1, 0}}}, PeriodicCell{0, 0, 1, 1});
   const RayScene rays(scene);
   RandomStream random(29);
   for (int i = 0; i < 20000; ++i) {
@@ -244,8 +250,9 @@ TEST_CASE("periodic: a ground that fills the cell has no gaps, on borders neithe
 
 TEST_CASE("periodic: a leaf over very many cells is refused, with a reason") {
   const auto scene = facets({flat(0, 0, 0, 1e5)}, PeriodicCell{0, 0, 1, 1});
-  CHECK_THROWS_WITH(RayScene(scene), "domain.periodic: found facets that reach over more than 10000032 cells; expected a cell of about the plants' size, "
-                                     "all in metres");
+  CHECK_THROWS_WITH(RayScene(scene),
+                    "domain.periodic: found facets that reach over more than 10000032 cells; expected a cell of about the plants' size, "
+                    "all in metres");
   const auto far = facets({flat(0, 1e12)}, PeriodicCell{0, 0, 1, 1});
   CHECK_THROWS_AS(RayScene(far), InputError);
 }
