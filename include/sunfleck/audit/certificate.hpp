@@ -14,15 +14,16 @@
 namespace sunfleck {
 
 struct CertificateSettings {
-  std::uint64_t seed = 1;  ///< of the solve; the certificate's numbers are independent of those that solve and reference draw from it
-  int threads = 0;         ///< 0 = all cores
-  std::uint32_t organs = 240;       ///< to check; all, where a scene has no more
-  std::uint64_t rays = 0;           ///< to spend, about; 0 = 2 million up to 10^5 facets, then less with their root, 600,000 from 1.1 10^6 on
+  std::uint64_t seed = 1;      ///< of the solve; the certificate's numbers are independent of those that solve and reference draw from it
+  int threads = 0;             ///< 0 = all cores
+  std::uint32_t organs = 240;  ///< to check; all, where a scene has no more
+  std::uint64_t rays = 0;      ///< to spend, about; 0 = 2 million up to 10^5 facets, then less with their root, 600,000 from 1.1 10^6 on
 };
 
 /// Checks organs of plants, drawn with a probability proportional to their area plus three times the mean area (systematic sampling in
-/// scene order; organs larger than the sampling step are taken for sure) and weighted by area over probability, by paths from points uniform over each organ's area. Estimates, per band, over all states
-/// together (x solved, r reference, per area; w area; the Error definition of docs/formats-result.md):
+/// scene order; organs larger than the sampling step are taken for sure) and weighted by area over probability, by paths from points
+/// uniform over each organ's area. Estimates, per band, over all states together (x solved, r reference, per area; w area; the Error
+/// definition of docs/formats-result.md):
 ///   rmse^2 = max(0, sum w ((x - r)^2 - var r) / sum w), bias = sum w (x - r) / sum w, over the mean of r,
 /// where the mean of r is the mean of x over *all* organs less the bias, which is far less noisy than that of the checked ones.
 /// The interval and the bias's standard error hold both the choice of organs and the noise of the paths (see error_interval.hpp).
@@ -30,9 +31,9 @@ struct CertificateSettings {
 ///
 /// Work is counted in rays, not seconds, so that every machine gives the same certificate: a number that depends on the number of
 /// facets alone, some per cent more to find out what a path costs, and the tree of rays (1.3 microseconds a facet): below 2 s on one core
-/// up to 10^5 facets, and some 4 s with 10^6, where solving takes far longer. Fewer organs are checked (at least 64) where 16 samples of each
-/// would cost more. Same bits for any number of threads. A scene without plant organs yields measures of zero and no organs.
-Certificate certify(const Scene& scene, const FacetScene& facets, const OrganTotals& solved, const std::vector<std::vector<Balance>>& balance,
-                    const CertificateSettings& settings, Progress& progress);
+/// up to 10^5 facets, and some 4 s with 10^6, where solving takes far longer. Fewer organs are checked (at least 64) where 16 samples of
+/// each would cost more. Same bits for any number of threads. A scene without plant organs yields measures of zero and no organs.
+Certificate certify(const Scene& scene, const FacetScene& facets, const OrganTotals& solved,
+                    const std::vector<std::vector<Balance>>& balance, const CertificateSettings& settings, Progress& progress);
 
 }  // namespace sunfleck

@@ -13,9 +13,9 @@ namespace sunfleck {
 struct SolveOptions {
   std::string scene, result;
   std::optional<std::string> method, quality;
-  std::optional<double> error;            ///< wanted error, per organ, fraction
+  std::optional<double> error;  ///< wanted error, per organ, fraction
   std::optional<std::uint64_t> seed;
-  std::optional<std::uint32_t> samples;   ///< reference method, per facet
+  std::optional<std::uint32_t> samples;  ///< reference method, per facet
   int threads = 0;
   bool certificate = true;
 };
@@ -43,14 +43,14 @@ int verb_export(const ExportOptions& options, Progress& progress);
 struct RenderOptions {
   std::string result, output;
   std::optional<std::string> quantity, band, state, colormap;  ///< quantity: "colour" or a stored quantity
-  std::vector<double> eye, target;      ///< empty = frames the scene
+  std::vector<double> eye, target;                             ///< empty = frames the scene
   std::optional<double> azimuth_deg, elevation_deg, field_of_view_deg;
-  std::vector<double> range;            ///< low, high; empty = from the data
+  std::vector<double> range;  ///< low, high; empty = from the data
   int width = 1200, height = 900, samples = 9;
   bool logarithmic = false, ground = true;
-  bool orthographic = false;            ///< parallel projection
-  bool map_ground = false;              ///< a map colours the ground by its values too
-  bool infinite = false;                ///< a periodic scene is drawn with its repetition
+  bool orthographic = false;  ///< parallel projection
+  bool map_ground = false;    ///< a map colours the ground by its values too
+  bool infinite = false;      ///< a periodic scene is drawn with its repetition
 };
 int verb_render(const RenderOptions& options, Progress& progress);
 

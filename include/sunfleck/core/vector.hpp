@@ -33,7 +33,9 @@ struct Affine {
 };
 
 /// First b, then a.
-inline Affine operator*(const Affine& a, const Affine& b) { return {a.linear * b.linear, a.linear * b.translation + a.translation}; }
+inline Affine operator*(const Affine& a, const Affine& b) {
+  return {a.linear * b.linear, a.linear * b.translation + a.translation};
+}
 
 /// Axis-aligned box; empty until something is added.
 struct Box {
@@ -54,6 +56,8 @@ struct Box {
 };
 
 /// Half the cross product of two edges: length is the area [m^2], direction is the front normal.
-inline Vec3 area_vector(const Triangle& t) { return 0.5 * glm::cross(t[1] - t[0], t[2] - t[0]); }
+inline Vec3 area_vector(const Triangle& t) {
+  return 0.5 * glm::cross(t[1] - t[0], t[2] - t[0]);
+}
 
 }  // namespace sunfleck

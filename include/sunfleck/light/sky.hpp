@@ -23,9 +23,9 @@ const std::vector<std::string>& sky_model_names();
 /// the same radiance 1/pi all round (for tests).
 struct Sky {
   SkyModel model = SkyModel::uniform;
-  std::vector<double> irradiance;       ///< per band, horizontal, unobstructed [W m^-2]
-  std::optional<Vec3> sun;              ///< unit vector towards the sun; `clear` needs it (also with the sun's beam left out)
-  double clear_normalisation = 1.0;     ///< set by prepare_sky(): 1 / integral of the unnormalised clear sky
+  std::vector<double> irradiance;    ///< per band, horizontal, unobstructed [W m^-2]
+  std::optional<Vec3> sun;           ///< unit vector towards the sun; `clear` needs it (also with the sun's beam left out)
+  double clear_normalisation = 1.0;  ///< set by prepare_sky(): 1 / integral of the unnormalised clear sky
 
   /// Relative radiance towards the unit vector d [sr^-1].
   double relative_radiance(const Vec3& d) const;

@@ -10,8 +10,8 @@ namespace sunfleck {
 
 /// The sun's beam. Absent where it is below the horizon.
 struct Sun {
-  Vec3 direction{0, 0, 1};        ///< unit vector towards the centre of the disc, z up, x east, y north
-  std::vector<double> irradiance; ///< per band, on a plane that faces the sun [W m^-2]
+  Vec3 direction{0, 0, 1};             ///< unit vector towards the centre of the disc, z up, x east, y north
+  std::vector<double> irradiance;      ///< per band, on a plane that faces the sun [W m^-2]
   double angular_diameter_deg = 0.53;  ///< 0 = a point
 };
 

@@ -12,7 +12,7 @@ namespace sunfleck {
 
 /// Corners are vertex indices, counter-clockwise seen from the front. Polygons of a file are fans from their first vertex.
 struct Mesh {
-  std::vector<Vec3> vertices;                          ///< [m]
+  std::vector<Vec3> vertices;  ///< [m]
   std::vector<std::array<std::uint32_t, 3>> triangles;
 
   Triangle corners(std::size_t t) const {

@@ -30,8 +30,8 @@ struct Shape {
   std::uint32_t mesh = 0;       ///< index into Plant::meshes
   std::uint32_t first_triangle = 0;
   std::uint32_t triangle_count = 0;
-  std::uint32_t material = 0;   ///< index into Plant::materials: OBJ material, or "" where the file names none
-  Affine placement;             ///< mesh coordinates -> plant frame [m]; where it mirrors, fronts stay fronts (corners swapped)
+  std::uint32_t material = 0;  ///< index into Plant::materials: OBJ material, or "" where the file names none
+  Affine placement;            ///< mesh coordinates -> plant frame [m]; where it mirrors, fronts stay fronts (corners swapped)
 };
 
 /// Structures in depth-first order; [0] is the plant itself.

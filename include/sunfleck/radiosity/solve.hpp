@@ -35,6 +35,7 @@ struct RadiositySettings : SolveSettings {
 /// Solves E = E0 + F R E for the irradiance E of both sides of every facet, all bands and lighting states together
 /// (bi-Lambertian: B_f = rho_f E_f + tau E_b, B_b = rho_b E_b + tau E_f), and hands the rows to the sink in facet order.
 /// docs/theory.md describes the method. Throws Stopped; InputError if there is nothing to project.
-SolveReport solve_radiosity(const Scene& scene, const FacetScene& facets, const RadiositySettings& settings, IrradianceSink& sink, Progress& progress);
+SolveReport solve_radiosity(const Scene& scene, const FacetScene& facets, const RadiositySettings& settings, IrradianceSink& sink,
+                            Progress& progress);
 
 }  // namespace sunfleck

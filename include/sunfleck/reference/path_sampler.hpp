@@ -59,7 +59,8 @@ class PathSampler {
 
   /// `count` samples, each one point with one path from its front and one from its back, and `sun_points` (at least 1) further
   /// points with shadow rays to the suns. Any number of threads may call it.
-  void sample(const SampleTarget& target, std::uint32_t randomisation, std::uint32_t count, std::uint32_t sun_points, SampleMeans& means) const;
+  void sample(const SampleTarget& target, std::uint32_t randomisation, std::uint32_t count, std::uint32_t sun_points,
+              SampleMeans& means) const;
 
   /// Share of the light that first meets facets or ground which leaves the scene again, per state and band [s][b] [-], from 16
   /// times `count` particles for each state's sun and sky, sent into the scene: an estimate independent of sample(), for the balance. 0

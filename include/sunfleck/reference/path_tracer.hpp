@@ -25,6 +25,7 @@ inline constexpr std::uint32_t reference_randomisations = 16;
 /// Balance: incident is the direct light on all facets, leaves and ground what they absorb, all from the paths; escaped is incident
 /// times the share found by particles sent from sun and sky (PathSampler::escape_share), so that the residual is a true check: about
 /// the noise of both. Same bits for any number of threads. Throws Stopped if the user cancels.
-SolveReport trace_reference(const Scene& scene, const FacetScene& facets, const ReferenceSettings& settings, IrradianceSink& sink, Progress& progress);
+SolveReport trace_reference(const Scene& scene, const FacetScene& facets, const ReferenceSettings& settings, IrradianceSink& sink,
+                            Progress& progress);
 
 }  // namespace sunfleck

@@ -28,9 +28,9 @@ struct Ground {
   std::array<double, 2> size{1, 1};    ///< [m]
   std::array<double, 2> centre{0, 0};  ///< [m]
   std::array<std::uint32_t, 2> cells{1, 1};
-  double height = 0.0;                 ///< [m]
-  std::optional<Mesh> mesh;            ///< takes the place of size, centre, cells, height
-  Optics optics;                       ///< reflectance_front = reflectance_back, transmittance 0
+  double height = 0.0;       ///< [m]
+  std::optional<Mesh> mesh;  ///< takes the place of size, centre, cells, height
+  Optics optics;             ///< reflectance_front = reflectance_back, transmittance 0
 };
 
 /// A copy of a plant or group: local frame -> frame of what holds it.
@@ -41,10 +41,10 @@ struct Placement {
 /// A plant of the scene; `plant` is shared where two entries read the same file with the same unit.
 struct PlantEntry {
   std::string name;
-  std::shared_ptr<const Plant> plant;              ///< lengths in metres
-  std::vector<std::uint32_t> shape_optics;         ///< per shape of the plant, row of Scene::optics
-  std::string policy_file;                         ///< empty = none
-  std::vector<Placement> placements;               ///< in the world
+  std::shared_ptr<const Plant> plant;       ///< lengths in metres
+  std::vector<std::uint32_t> shape_optics;  ///< per shape of the plant, row of Scene::optics
+  std::string policy_file;                  ///< empty = none
+  std::vector<Placement> placements;        ///< in the world
 };
 
 /// A structure made of plants or other groups.
@@ -61,8 +61,8 @@ struct GroupEntry {
 
 /// What the result file keeps.
 struct OutputChoice {
-  bool facets = true;                ///< false keeps organs only
-  std::vector<std::string> fields;   ///< dataset names as in the result ("facets/irradiance"); empty = all
+  bool facets = true;               ///< false keeps organs only
+  std::vector<std::string> fields;  ///< dataset names as in the result ("facets/irradiance"); empty = all
 };
 
 /// Names that [output] fields may list: "facets/irradiance", ... Rows of names and places are always kept.
@@ -80,19 +80,19 @@ struct SolveChoice {
 };
 
 struct Scene {
-  std::string file;    ///< empty if built in memory
-  std::string text;    ///< TOML as read
+  std::string file;  ///< empty if built in memory
+  std::string text;  ///< TOML as read
   std::vector<std::string> bands;
   std::vector<std::string> band_units;  ///< per band: "W m^-2" or "umol m^-2 s^-1"
   std::optional<PeriodicCell> periodic;
-  std::vector<LightState> states;       ///< at least one
-  std::vector<Optics> optics;           ///< of plants
+  std::vector<LightState> states;  ///< at least one
+  std::vector<Optics> optics;      ///< of plants
   std::optional<Ground> ground;
   std::vector<PlantEntry> plants;
   std::vector<GroupEntry> groups;
   OutputChoice output;
   SolveChoice solve;
-  std::vector<std::string> notes;       ///< what the reader wants the user to know ("sun below the horizon in state ...")
+  std::vector<std::string> notes;  ///< what the reader wants the user to know ("sun below the horizon in state ...")
 
   std::size_t band_count() const { return bands.size(); }
 };

@@ -45,7 +45,7 @@ struct Balance {
 struct IterationRow {
   std::uint32_t level = 0;
   std::uint32_t iteration = 0;
-  double residual = 0;   ///< ||E0 + F R E - E|| / ||E0||, true residual, worst band and state
+  double residual = 0;  ///< ||E0 + F R E - E|| / ||E0||, true residual, worst band and state
   std::uint64_t links = 0;
   double seconds = 0;
 };
@@ -67,8 +67,8 @@ struct SolveReport {
 /// Settings shared by all methods.
 struct SolveSettings {
   std::uint64_t seed = 1;
-  int threads = 0;        ///< 0 = all cores
-  double tolerance = 0;   ///< relative true residual; 0 = the quality's own
+  int threads = 0;       ///< 0 = all cores
+  double tolerance = 0;  ///< relative true residual; 0 = the quality's own
 };
 
 }  // namespace sunfleck

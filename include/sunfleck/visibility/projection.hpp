@@ -18,7 +18,7 @@ struct Projection {
   double x0 = 0, y0 = 0;
   int columns = 1, rows = 1;
   bool wraps = false;
-  double line_area = 1.0;   ///< area perpendicular to the direction that one line stands for [m^2]
+  double line_area = 1.0;  ///< area perpendicular to the direction that one line stands for [m^2]
 };
 
 /// Lines about `pitch` apart [m]; turned by `turn` [rad] (finite scenes) and shifted by fractions of a pixel against aliasing.
@@ -48,7 +48,7 @@ struct LineBundle {
   /// Upward side of each fragment, from the lowest to the highest: 2 * cell + (0 if the front faces the direction, else 1).
   /// `side ^ 1` is the downward side.
   std::vector<std::uint32_t> side;
-  std::vector<float> depth;          ///< along the line, same order; times depth_to_length = distance [m]
+  std::vector<float> depth;  ///< along the line, same order; times depth_to_length = distance [m]
   double depth_to_length = 1.0;
 };
 
