@@ -38,7 +38,7 @@ class TreeBuilder {
       // a chain of single children adds nothing
       while (members.size() == 1 && !units_[members[0]].children.empty()) members = units_[members[0]].children;
       if (members.size() == 1) {
-        out_.nodes[task.node].first_organ = units_[members[0]].organ;  // an organ for now; turned into a position below
+        out_.nodes[task.node].first_organ = units_[members[0]].organ;  // the organ itself; number_organs() turns it into a position
         continue;
       }
       const auto parts = split(members);
