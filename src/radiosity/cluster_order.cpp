@@ -1,4 +1,4 @@
-#include "cluster_order.hpp"
+#include <sunfleck/radiosity/cluster_order.hpp>
 
 #include <algorithm>
 

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "cluster_order.hpp"
-#include "elements.hpp"
+#include <sunfleck/radiosity/cluster_order.hpp>
+#include <sunfleck/radiosity/elements.hpp>
 
 namespace sunfleck {
 

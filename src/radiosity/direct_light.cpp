@@ -54,10 +54,6 @@ class Conservation {
   double found_[2] = {0, 0}, given_[2] = {0, 0};
 };
 
-bool same_radiance(const Sky& a, const Sky& b) {
-  return a.model == b.model && (a.model != SkyModel::clear || (a.sun && b.sun && *a.sun == *b.sun));
-}
-
 class DirectLightSolver {
  public:
   DirectLightSolver(const Scene& scene, const FacetScene& facets, const Elements& elements, const RadiositySettings& settings,
@@ -71,7 +67,7 @@ class DirectLightSolver {
         progress_(progress) {}
 
   DirectLight run() {
-    auto sources = light_sources(scene_);
+    auto sources = light_sources(scene_.states);
     skies_ = std::move(sources.skies);
     suns_ = std::move(sources.suns);
     out_.sky_of_state = std::move(sources.sky_of_state);
@@ -290,29 +286,6 @@ std::size_t DirectLight::bytes() const {
   for (const auto* list : {&sky, &sunlit, &sun_cosine})
     for (const auto& v : *list) total += bytes_of(v);
   return total;
-}
-
-LightSources light_sources(const Scene& scene) {
-  LightSources out;
-  for (const auto& state : scene.states) {
-    std::uint32_t sky_row = DirectLight::none, sun_row = DirectLight::none;
-    if (state.sky) {
-      for (sky_row = 0; sky_row < out.skies.size() && !same_radiance(*out.skies[sky_row], *state.sky); ++sky_row) {
-      }
-      if (sky_row == out.skies.size()) out.skies.push_back(&*state.sky);
-    }
-    if (state.sun) {
-      const auto same = [&](const Sun& sun) {
-        return sun.direction == state.sun->direction && sun.angular_diameter_deg == state.sun->angular_diameter_deg;
-      };
-      for (sun_row = 0; sun_row < out.suns.size() && !same(*out.suns[sun_row]); ++sun_row) {
-      }
-      if (sun_row == out.suns.size()) out.suns.push_back(&*state.sun);
-    }
-    out.sky_of_state.push_back(sky_row);
-    out.sun_of_state.push_back(sun_row);
-  }
-  return out;
 }
 
 DirectLight direct_light(const Scene& scene, const FacetScene& facets, const Elements& elements, const RadiositySettings& settings,

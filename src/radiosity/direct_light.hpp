@@ -6,9 +6,10 @@
 
 #include <sunfleck/core/progress.hpp>
 #include <sunfleck/core/timer.hpp>
+#include <sunfleck/light/light_sources.hpp>
 #include <sunfleck/scene/solution.hpp>
 
-#include "elements.hpp"
+#include <sunfleck/radiosity/elements.hpp>
 
 namespace sunfleck {
 
@@ -21,18 +22,10 @@ struct DirectLight {
   std::vector<std::vector<float>> sunlit;      ///< per sun: fraction of the side that the sun reaches [2 * cells]
   std::vector<std::vector<float>> sun_cosine;  ///< per sun: cosine between each surface row's front normal and the sun [rows]
   std::uint64_t fragments = 0;
-  static constexpr std::uint32_t none = 0xffffffffu;
+  static constexpr std::uint32_t none = LightSources::none;
 
   std::size_t bytes() const;
 };
-
-/// The distinct skies and suns of a scene's states: states that differ in strength alone share one.
-struct LightSources {
-  std::vector<const Sky*> skies;
-  std::vector<const Sun*> suns;
-  std::vector<std::uint32_t> sky_of_state, sun_of_state;  ///< [s] row of the lists above, or DirectLight::none
-};
-LightSources light_sources(const Scene& scene);
 
 DirectLight direct_light(const Scene& scene, const FacetScene& facets, const Elements& elements, const RadiositySettings& settings,
                          Timings& timings, Progress& progress);

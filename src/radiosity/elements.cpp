@@ -1,4 +1,4 @@
-#include "elements.hpp"
+#include <sunfleck/radiosity/elements.hpp>
 
 #include <algorithm>
 #include <cmath>

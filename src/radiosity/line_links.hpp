@@ -8,7 +8,7 @@
 #include <sunfleck/core/progress.hpp>
 
 #include "cluster_tree.hpp"
-#include "elements.hpp"
+#include <sunfleck/radiosity/elements.hpp>
 
 namespace sunfleck {
 

@@ -6,7 +6,7 @@
 
 #include "cluster_tree.hpp"
 #include "direct_light.hpp"
-#include "elements.hpp"
+#include <sunfleck/radiosity/elements.hpp>
 #include "line_links.hpp"
 
 namespace sunfleck {
@@ -59,7 +59,7 @@ class Planner {
   static constexpr std::uint64_t word = sizeof(float);
 
   void direct() {
-    const auto sources = light_sources(scene_);
+    const auto sources = light_sources(scene_.states);
     const auto& density = settings_.density;
     const std::uint64_t sides = 2 * plan_.cells;
     std::uint64_t values = 0;

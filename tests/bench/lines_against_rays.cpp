@@ -23,7 +23,7 @@
 #include <sunfleck/visibility/rays.hpp>
 
 #include "radiosity/direct_light.hpp"
-#include "radiosity/elements.hpp"
+#include <sunfleck/radiosity/elements.hpp>
 #include "radiosity/gmres.hpp"
 #include "radiosity/line_links.hpp"
 #include "radiosity/transport.hpp"

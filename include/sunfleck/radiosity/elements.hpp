@@ -7,7 +7,7 @@
 #include <sunfleck/radiosity/solve.hpp>
 #include <sunfleck/visibility/surface.hpp>
 
-#include "cluster_order.hpp"
+#include <sunfleck/radiosity/cluster_order.hpp>
 
 namespace sunfleck {
 

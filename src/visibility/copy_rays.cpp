@@ -1,0 +1,225 @@
+#include <sunfleck/visibility/copies.hpp>
+
+#include <embree3/rtcore.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <limits>
+
+#include <sunfleck/core/error.hpp>
+
+namespace sunfleck {
+
+namespace {
+
+constexpr double least_slope = 1e-4;  // of rays in periodic scenes
+constexpr double most_cells = 1e6;    // that a ray is wrapped through
+
+struct Release {
+  void operator()(RTCDevice d) const { rtcReleaseDevice(d); }
+  void operator()(RTCScene s) const { rtcReleaseScene(s); }
+};
+using DevicePointer = std::unique_ptr<RTCDeviceTy, Release>;
+using ScenePointer = std::unique_ptr<RTCSceneTy, Release>;
+
+}  // namespace
+
+struct CopyRays::Impl {
+  explicit Impl(const CopyScene& s) : scene(s) {
+    device.reset(rtcNewDevice(nullptr));
+    if (!device) throw Error("Embree could not be started");
+    rtcSetDeviceMemoryMonitorFunction(device.get(), &Impl::monitor, this);
+    box = extent();
+    centre = box.empty() ? Vec3{0.0} : box.centre();
+    if (scene.periodic) {
+      centre.x = scene.periodic->x_low;
+      centre.y = scene.periodic->y_low;
+    }
+    top.reset(rtcNewScene(device.get()));
+    rtcSetSceneFlags(top.get(), RTC_SCENE_FLAG_COMPACT);
+    for (const auto* surface : scene.surfaces) parts.push_back(surface_scene(*surface));
+    for (std::uint32_t c = 0; c < scene.copies.size(); ++c) add_copy(c);
+    if (!scene.ground.empty()) add_ground();
+    rtcCommitScene(top.get());
+    if (const auto error = rtcGetDeviceError(device.get()); error != RTC_ERROR_NONE)
+      throw Error(error == RTC_ERROR_OUT_OF_MEMORY ? "not enough memory for the rays' acceleration structure" : "Embree failed");
+  }
+
+  static bool monitor(void* self, ssize_t bytes, bool) {
+    static_cast<Impl*>(self)->held += bytes;
+    return true;
+  }
+
+  static Box box_of(const Surface& s, const Affine& map) {
+    Box b;
+    for (int i = 0; i < 8; ++i)
+      b.add(map.point(s.origin + Vec3{i & 1 ? s.focus.high.x : s.focus.low.x, i & 2 ? s.focus.high.y : s.focus.low.y,
+                                      i & 4 ? s.focus.high.z : s.focus.low.z}));
+    return b;
+  }
+
+  Box extent() const {
+    Box b;
+    for (const auto& copy : scene.copies)
+      if (!scene.surfaces[copy.surface]->focus.empty()) b.add(box_of(*scene.surfaces[copy.surface], copy.map));
+    for (const auto& t : scene.ground)
+      for (const auto& p : t) b.add(p);
+    return b;
+  }
+
+  ScenePointer surface_scene(const Surface& s) {
+    ScenePointer out(rtcNewScene(device.get()));
+    rtcSetSceneFlags(out.get(), RTC_SCENE_FLAG_COMPACT);
+    const RTCGeometry g = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
+    const std::size_t n = s.size();
+    auto* vertex = static_cast<float*>(rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, 3 * n));
+    auto* index = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, n));
+    if (!vertex || !index) throw Error("not enough memory for the rays' geometry");
+    for (std::size_t t = 0; t < n; ++t)
+      for (std::size_t k = 0; k < 9; ++k) vertex[9 * t + k] = s.split[t] == 0 ? 0.0f : s.corner[k][t];
+    for (std::uint32_t i = 0; i < 3 * n; ++i) index[i] = i;
+    rtcCommitGeometry(g);
+    rtcAttachGeometry(out.get(), g);
+    rtcReleaseGeometry(g);
+    rtcCommitScene(out.get());
+    return out;
+  }
+
+  void add_instance(std::uint32_t c, const Vec3& moved) {
+    const auto& copy = scene.copies[c];
+    const RTCGeometry g = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_INSTANCE);
+    rtcSetGeometryInstancedScene(g, parts[copy.surface].get());
+    const Vec3 t = copy.map.point(scene.surfaces[copy.surface]->origin) + moved - centre;
+    float x[12];
+    for (int column = 0; column < 3; ++column)
+      for (int row = 0; row < 3; ++row) x[3 * column + row] = static_cast<float>(copy.map.linear[column][row]);
+    for (int row = 0; row < 3; ++row) x[9 + row] = static_cast<float>(t[row]);
+    rtcSetGeometryTransform(g, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, x);
+    rtcCommitGeometry(g);
+    rtcAttachGeometryByID(top.get(), g, static_cast<unsigned>(instance_copy.size()));
+    rtcReleaseGeometry(g);
+    instance_copy.push_back(c);
+    instance_moved.push_back(moved);
+  }
+
+  /// In periodic scenes every image whose box reaches into the cell stands in it.
+  void add_copy(std::uint32_t c) {
+    const auto& s = *scene.surfaces[scene.copies[c].surface];
+    if (s.focus.empty()) return;
+    if (!scene.periodic) return add_instance(c, Vec3{0.0});
+    const auto& cell = *scene.periodic;
+    const Box b = box_of(s, scene.copies[c].map);
+    const auto low_x = std::ceil((cell.x_low - b.high.x) / cell.width()), high_x = std::floor((cell.x_high - b.low.x) / cell.width());
+    const auto low_y = std::ceil((cell.y_low - b.high.y) / cell.depth()), high_y = std::floor((cell.y_high - b.low.y) / cell.depth());
+    if ((high_x - low_x + 1) * (high_y - low_y + 1) > 1e6)
+      throw InputError("domain.periodic", "a plant that reaches over more than 10^6 cells", "a cell of about the plants' size, all in metres");
+    for (double y = low_y; y <= high_y; ++y)
+      for (double x = low_x; x <= high_x; ++x) add_instance(c, {x * cell.width(), y * cell.depth(), 0.0});
+  }
+
+  void add_ground() {
+    const RTCGeometry g = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
+    const std::size_t n = scene.ground.size();
+    auto* vertex = static_cast<float*>(rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, 3 * n));
+    auto* index = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, n));
+    if (!vertex || !index) throw Error("not enough memory for the rays' geometry");
+    for (std::size_t t = 0; t < n; ++t)
+      for (int k = 0; k < 3; ++k)
+        for (int axis = 0; axis < 3; ++axis) vertex[9 * t + 3 * k + axis] = static_cast<float>(scene.ground[t][k][axis] - centre[axis]);
+    for (std::uint32_t i = 0; i < 3 * n; ++i) index[i] = i;
+    rtcCommitGeometry(g);
+    ground_id = static_cast<unsigned>(instance_copy.size());
+    rtcAttachGeometryByID(top.get(), g, ground_id);
+    rtcReleaseGeometry(g);
+  }
+
+  /// The first thing between `from` and `to` along the ray; false if there is none.
+  bool segment(const Vec3& origin, const Vec3& d, double from, double to, RTCRayHit& r) const {
+    r = {};
+    r.ray.org_x = static_cast<float>(origin.x), r.ray.org_y = static_cast<float>(origin.y), r.ray.org_z = static_cast<float>(origin.z);
+    r.ray.dir_x = static_cast<float>(d.x), r.ray.dir_y = static_cast<float>(d.y), r.ray.dir_z = static_cast<float>(d.z);
+    r.ray.tnear = static_cast<float>(from);
+    r.ray.tfar = static_cast<float>(to);
+    r.ray.mask = 0xffffffffu;
+    r.hit.geomID = r.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcIntersect1(top.get(), &context, &r);
+    return r.hit.geomID != RTC_INVALID_GEOMETRY_ID;
+  }
+
+  CopyHit found(const RTCRayHit& r, const Vec3& point, const Vec3& moved) const {
+    CopyHit hit;
+    hit.point = point + centre;
+    if (r.hit.instID[0] == RTC_INVALID_GEOMETRY_ID) {
+      hit.kind = CopyHit::Kind::ground;
+      hit.index = r.hit.primID;
+    } else {
+      hit.kind = CopyHit::Kind::copy;
+      hit.index = instance_copy[r.hit.instID[0]];
+      hit.image = moved + instance_moved[r.hit.instID[0]];
+    }
+    return hit;
+  }
+
+  CopyHit trace(Vec3 p, Vec3 d, double skip, double range) const {
+    p -= centre;
+    RTCRayHit r;
+    if (!scene.periodic) {
+      if (!segment(p, d, skip, range, r)) return {};
+      return found(r, p + static_cast<double>(r.ray.tfar) * d, Vec3{0.0});
+    }
+    if (std::fabs(d.z) < least_slope) d = glm::normalize(Vec3{d.x, d.y, d.z < 0 ? -least_slope : least_slope});
+    const double width = scene.periodic->width(), depth = scene.periodic->depth();
+    const double low = box.low.z - centre.z, high = box.high.z - centre.z;
+    p.x -= width * std::floor(p.x / width);
+    p.y -= depth * std::floor(p.y / depth);
+    double travelled = 0, from = skip;
+    for (double cells = 0; cells < most_cells; ++cells) {
+      const double to_x = d.x > 0 ? (width - p.x) / d.x : d.x < 0 ? -p.x / d.x : std::numeric_limits<double>::infinity();
+      const double to_y = d.y > 0 ? (depth - p.y) / d.y : d.y < 0 ? -p.y / d.y : std::numeric_limits<double>::infinity();
+      const double to_end = d.z > 0 ? (high - p.z) / d.z : (low - p.z) / d.z;
+      const double step = std::max(0.0, std::min(to_x, to_y)), overlap = 1e-6 * (1.0 + step);
+      const double to = std::min({step + overlap, to_end + overlap, range - travelled});
+      if (to > from && segment(p, d, from, to, r)) return found(r, p + static_cast<double>(r.ray.tfar) * d, Vec3{0.0});
+      if (to_end <= step || travelled + step >= range) return {};
+      p += step * d;
+      if (to_x <= to_y) p.x += d.x > 0 ? -width : width;
+      if (to_y <= to_x) p.y += d.y > 0 ? -depth : depth;
+      p.x = std::clamp(p.x, 0.0, width);
+      p.y = std::clamp(p.y, 0.0, depth);
+      travelled += step;
+      from = std::max(0.0, from - step);
+    }
+    return {};
+  }
+
+  const CopyScene& scene;
+  std::atomic<std::int64_t> held{0};
+  DevicePointer device;
+  std::vector<ScenePointer> parts;
+  ScenePointer top;
+  Vec3 centre{0.0};
+  Box box;
+  std::vector<std::uint32_t> instance_copy;
+  std::vector<Vec3> instance_moved;
+  unsigned ground_id = 0;
+};
+
+CopyRays::CopyRays(const CopyScene& scene) : impl_(std::make_unique<Impl>(scene)) {}
+CopyRays::~CopyRays() = default;
+
+CopyHit CopyRays::first_hit(const Vec3& origin, const Vec3& direction, double skip) const {
+  return impl_->trace(origin, direction, skip, std::numeric_limits<double>::infinity());
+}
+
+bool CopyRays::occluded(const Vec3& origin, const Vec3& direction, double skip, double range) const {
+  return impl_->trace(origin, direction, skip, range).kind != CopyHit::Kind::nothing;
+}
+
+std::size_t CopyRays::bytes() const {
+  return static_cast<std::size_t>(impl_->held.load()) + impl_->instance_copy.capacity() * 4 + impl_->instance_moved.capacity() * sizeof(Vec3);
+}
+
+}  // namespace sunfleck
