@@ -71,6 +71,7 @@ struct Verbs {
   RenderOptions render;
   GenerateOptions generate;
   InfoOptions info;
+  OriginalsOptions originals;
 };
 
 constexpr const char* method_help =
@@ -229,6 +230,15 @@ void add_generate(CLI::App& verb, GenerateOptions& o) {
       "  sunfleck generate plants/poplar.toml -o poplar.h5 --age 8 --seed 3");
 }
 
+void add_originals(CLI::App& verb, OriginalsOptions& o) {
+  verb.add_option("SCENE", o.scene, "scene file, TOML")->required()->type_name("");
+  verb.add_option("--policy", o.policy, "policy file for all plants, in place of those that the scene names")->type_name("POLICY.toml");
+  verb.add_flag("--json", o.json, "print JSON instead of a table");
+  verb.footer(
+      "Example:\n"
+      "  sunfleck originals stand.toml --policy policies/generic.toml");
+}
+
 std::string hint(const std::string& found, const std::vector<std::string>& known) {
   const std::string near = nearest_name(found, known);
   return near.empty() ? "" : "; did you mean '" + near + "'?";
@@ -258,6 +268,7 @@ class Program {
     add("export", "a result as a lit mesh or a table", add_export, verbs_.exporting, verb_export);
     add("render", "a picture of a result", add_render, verbs_.render, verb_render);
     add("info", "what a result, plant, species or scene file holds", add_info, verbs_.info, verb_info);
+    add("originals", "which structures share an original, and its tables", add_originals, verbs_.originals, verb_originals);
     add("generate", "a procedural plant from a species file", add_generate, verbs_.generate, verb_generate);
   }
 

@@ -67,4 +67,11 @@ struct InfoOptions {
 };
 int verb_info(const InfoOptions& options, Progress& progress);
 
+struct OriginalsOptions {
+  std::string scene;
+  std::optional<std::string> policy;  ///< takes the place of the policies that the scene names
+  bool json = false;
+};
+int verb_originals(const OriginalsOptions& options, Progress& progress);
+
 }  // namespace sunfleck

@@ -1,0 +1,28 @@
+// Rotation, mirror, uniform scale and move that take one list of facets to another.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include <sunfleck/core/vector.hpp>
+
+namespace sunfleck {
+
+/// p -> scale * turn * p + move, as an affine map and its scale.
+struct Similarity {
+  Affine map;
+  double scale = 1.0;
+};
+
+/// The similarity that takes facet i of `from` to facet i of `to` for all i, corners in order (where it mirrors, corners 1 and 2 swapped,
+/// as copies have them), each corner within `tolerance` times the root mean squared distance from the centre. Nothing if there is none, or
+/// if the facets do not fix it. Least squares: Umeyama 1991, doi:10.1109/34.88573.
+std::optional<Similarity> find_similarity(const std::vector<Triangle>& from, const std::vector<Triangle>& to, double tolerance);
+
+/// The scale of a linear map that is a rotation or mirror times a uniform scale (to 1e-9); nothing if it shears or stretches.
+std::optional<double> uniform_scale(const Mat3& linear);
+
+/// The rotation nearest to a linear map (in the sense of least squares); mirrors if the map does.
+Mat3 nearest_rotation(const Mat3& linear);
+
+}  // namespace sunfleck
