@@ -62,6 +62,7 @@ Json json_of(const Result& r) {
         {"organs", c->organs.size()}, {"rmse", c->rmse}, {"rmse_low", c->rmse_low}, {"rmse_high", c->rmse_high}, {"bias", c->bias}};
   const auto convergence = r.convergence();
   if (!convergence.empty()) json["residual"] = convergence.back().residual;
+  if (const auto radius = r.spectral_radius(); !radius.empty()) json["spectral_radius"] = radius;
   for (const auto& [name, value] : r.counts()) json["counts"][name] = value;
   for (const auto& [name, seconds] : r.timings()) json["timings_s"][name] = seconds;
   for (const auto& [name, bytes] : r.memory()) json["memory_bytes"][name] = bytes;
@@ -101,6 +102,8 @@ void print_result_info(const std::string& file, bool json) {
     if (r.has(name)) fmt::print("  {:<20} {}\n", name, shape_text(r.shape(name)));
   if (const auto convergence = r.convergence(); !convergence.empty())
     fmt::print("residual   {:.2e} after {}\n", convergence.back().residual, counted(convergence.size(), "iteration", "iterations"));
+  if (const auto radius = r.spectral_radius(); !radius.empty())
+    fmt::print("spectral radius of scattering {:.3f}\n", fmt::join(radius, " / "));
   for (const auto& [name, value] : r.counts()) fmt::print("  {:<20} {}\n", name, value);
 
   Scene scene;  // as much of it as the table shows

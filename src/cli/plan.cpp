@@ -164,9 +164,9 @@ void add_radiosity(const Scene& scene, const MethodChoice& choice, Progress& pro
   if (predicted.sky_fragments > 0) plan.work.emplace_back("lines meet surfaces, sky", predicted.sky_fragments);
   if (predicted.sun_fragments > 0) plan.work.emplace_back("lines meet surfaces, sun", predicted.sun_fragments);
   if (choice.method == "direct") return;
-  plan.work.emplace_back("lines meet surfaces, scattering", predicted.line_fragments);
+  if (predicted.line_fragments > 0) plan.work.emplace_back("lines meet surfaces, scattering", predicted.line_fragments);
   if (predicted.clusters > 0) plan.work.emplace_back("clusters", predicted.clusters);
-  plan.work.emplace_back("links", predicted.links);
+  if (predicted.links > 0) plan.work.emplace_back("links", predicted.links);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/Eigenvalues>
 #include <tbb/parallel_for.h>
 
 namespace sunfleck {
@@ -37,34 +38,49 @@ void add_scaled(Field& y, const std::vector<double>& factor, const Field& x, std
   });
 }
 
-void scale(Field& y, const std::vector<double>& factor, std::size_t columns) {
+void multiply(Field& y, const std::vector<double>& factor, std::size_t columns) {
   for (std::size_t i = 0; i < y.size(); i += columns)
     for (std::size_t c = 0; c < columns; ++c) y[i + c] *= static_cast<float>(factor[c]);
 }
 
+/// Largest |eigenvalue| of K = 1 - M in the space spanned, from the columns of M's Hessenberg matrix.
+double largest_eigenvalue(const std::vector<std::vector<double>>& hessenberg) {
+  auto n = static_cast<Eigen::Index>(hessenberg.size());
+  if (n == 0) return 0.0;
+  Eigen::MatrixXd k = Eigen::MatrixXd::Identity(n, n);
+  for (Eigen::Index j = 0; j < n; ++j)
+    for (Eigen::Index i = 0; i <= std::min(j + 1, n - 1); ++i) k(i, j) -= hessenberg[j][i];
+  return Eigen::EigenSolver<Eigen::MatrixXd>(k, false).eigenvalues().cwiseAbs().maxCoeff();
+}
+
 }  // namespace
 
+std::vector<double> norms(const Field& v, const std::vector<float>& weight, std::size_t columns) {
+  auto n = dot(v, v, weight, columns);
+  for (auto& value : n) value = std::sqrt(value);
+  return n;
+}
+
 GmresResult gmres(const std::function<void(const Field& x, Field& kx)>& apply, const Field& b, const std::vector<float>& weight,
-                  std::size_t columns, double tolerance, int most_iterations, Field& x, Progress& progress) {
+                  const std::vector<double>& scale, double tolerance, int most_iterations, Field& x, Progress& progress) {
   GmresResult result;
-  const auto norm = [&](const Field& v) {
-    auto n = dot(v, v, weight, columns);
-    for (auto& value : n) value = std::sqrt(value);
-    return n;
-  };
-  const auto b_norm = norm(b);
+  const std::size_t columns = scale.size();
+  const auto norm = [&](const Field& v) { return norms(v, weight, columns); };
   const auto worst = [&](const std::vector<double>& residual) {
     double w = 0;
     for (std::size_t c = 0; c < columns; ++c)
-      if (b_norm[c] > 0) w = std::max(w, residual[c] / b_norm[c]);
+      if (scale[c] > 0) w = std::max(w, residual[c] / scale[c]);
     return w;
   };
+  x = b;  // exact where nothing is scattered
   Field r(b.size()), kx(b.size());
+  result.spectral_radius.assign(columns, 0.0);
   double last_true = 0;
   const int longest = std::clamp(static_cast<int>(basis_bytes / (b.size() * sizeof(float) + 1)), shortest_cycle, longest_cycle);
   for (int iteration = 0;;) {
     progress.check();
     apply(x, kx);
+    ++iteration;
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, b.size(), 8192), [&](const auto& range) {
       for (std::size_t i = range.begin(); i < range.end(); ++i) r[i] = b[i] - x[i] + kx[i];
     });
@@ -80,14 +96,14 @@ GmresResult gmres(const std::function<void(const Field& x, Field& kx)>& apply, c
     last_true = residual;
     // a column that is there stands still, so that it does not depend on the company it is solved in
     for (std::size_t c = 0; c < columns; ++c)
-      if (beta[c] <= tolerance * b_norm[c]) beta[c] = 0.0;
-    const int cycle = std::min(longest, most_iterations - iteration);
+      if (beta[c] <= tolerance * scale[c]) beta[c] = 0.0;
+    const int cycle = std::max(1, std::min(longest, most_iterations - iteration));
     std::vector<Field> v(1, r);
     std::vector<double> inverse(columns);
     for (std::size_t c = 0; c < columns; ++c) inverse[c] = beta[c] > 0 ? 1.0 / beta[c] : 0.0;
-    scale(v[0], inverse, columns);
+    multiply(v[0], inverse, columns);
     // Hessenberg matrices, rotated to triangles as they grow
-    std::vector<std::vector<std::vector<double>>> h(columns);
+    std::vector<std::vector<std::vector<double>>> h(columns), hessenberg(columns);
     std::vector<std::vector<double>> g(columns), cosine(columns), sine(columns);
     for (std::size_t c = 0; c < columns; ++c) g[c] = {beta[c]};
     int steps = 0;
@@ -111,7 +127,11 @@ GmresResult gmres(const std::function<void(const Field& x, Field& kx)>& apply, c
       for (std::size_t c = 0; c < columns; ++c) {
         auto& column = column_h[c];
         inverse[c] = length[c] > 1e-30 ? 1.0 / length[c] : 0.0;
-        double below = length[c];
+        const double below = length[c];
+        if (steps_of[c] == steps && beta[c] > 0) {
+          hessenberg[c].push_back(column);
+          hessenberg[c].back().push_back(below);
+        }
         for (int j = 0; j < steps; ++j) {
           const double a = column[j], z = column[j + 1];
           column[j] = cosine[c][j] * a + sine[c][j] * z;
@@ -125,7 +145,7 @@ GmresResult gmres(const std::function<void(const Field& x, Field& kx)>& apply, c
         g[c].push_back(-sn * g[c][steps]);
         g[c][steps] *= cs;
         h[c].push_back(std::move(column));
-        const bool active = b_norm[c] > 0 && std::fabs(g[c][steps_of[c]]) > 0.5 * tolerance * b_norm[c];
+        const bool active = std::fabs(g[c][steps_of[c]]) > 0.5 * tolerance * scale[c];
         if (active && steps_of[c] == steps) steps_of[c] = steps + 1;
         estimate[c] = std::fabs(g[c][steps_of[c]]);
       }
@@ -133,9 +153,12 @@ GmresResult gmres(const std::function<void(const Field& x, Field& kx)>& apply, c
       result.residuals.push_back(worst(estimate));
       progress.check();
       if (result.residuals.back() <= 0.5 * tolerance || steps == cycle) break;
-      scale(w, inverse, columns);
+      multiply(w, inverse, columns);
       v.push_back(std::move(w));
     }
+    result.fields = std::max(result.fields, v.size() + 3);  // with r, K x and the next direction
+    for (std::size_t c = 0; c < columns; ++c)
+      result.spectral_radius[c] = std::max(result.spectral_radius[c], largest_eigenvalue(hessenberg[c]));
     std::vector<std::vector<double>> y(columns, std::vector<double>(steps, 0.0));
     for (std::size_t c = 0; c < columns; ++c)
       for (int i = steps_of[c]; i-- > 0;) {

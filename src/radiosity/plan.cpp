@@ -8,6 +8,7 @@
 #include "direct_light.hpp"
 #include <sunfleck/radiosity/elements.hpp>
 #include "line_links.hpp"
+#include "transport.hpp"
 
 namespace sunfleck {
 
@@ -51,7 +52,7 @@ class Planner {
     plan_.cells = elements_.surface.cells();
     plan_.memory.emplace_back("elements", elements_.bytes());
     direct();
-    if (settings_.method != RadiosityMethod::direct) scattering();
+    if (settings_.method != RadiosityMethod::direct && anything_scatters(facets_)) scattering();
     return std::move(plan_);
   }
 
@@ -112,7 +113,10 @@ class Planner {
     plan_.memory.emplace_back("links", 2 * half +
                                            whole(near * (sizeof(std::uint32_t) + sizeof(std::uint16_t)) + far * sizeof(FarField::Link)) +
                                            plan_.elements * word + (tree ? tree->bytes() : 0));
-    plan_.memory.emplace_back("fields", 14 * 2 * sides * columns_ * word + (4 * sides + (tree ? 2 * slots * (1 + columns_) : 0)) * word);
+    // 7 fields of the solver, 3 and a basis of the iteration; how far the basis grows, the optics alone do not tell
+    constexpr std::uint64_t fields_of_iteration = 7 + 3 + 8;
+    plan_.memory.emplace_back("fields",
+                              fields_of_iteration * sides * columns_ * word + (4 * sides + (tree ? 2 * slots * (1 + columns_) : 0)) * word);
     // a pair of sides waits in 8 bytes, and in 12 while its half is sorted; all that a batch of directions meets is kept in full
     constexpr double bytes_of_pair = 12.0, bytes_of_meeting = 32.0;
     const double in_batch = std::min(directions, line_batch(plan_.elements, settings_.density)) / directions;

@@ -1,10 +1,18 @@
 #include "transport.hpp"
 
+#include <algorithm>
+
 #include <tbb/parallel_for.h>
 
 #include <sunfleck/core/memory.hpp>
 
 namespace sunfleck {
+
+bool anything_scatters(const FacetScene& facets) {
+  const auto bright = [](const std::vector<float>& v) { return std::any_of(v.begin(), v.end(), [](float x) { return x > 0.0f; }); };
+  return std::any_of(facets.materials.begin(), facets.materials.end(),
+                     [&](const Optics& m) { return bright(m.reflectance_front) || bright(m.reflectance_back) || bright(m.transmittance); });
+}
 
 Reflection::Reflection(const FacetScene& facets, std::vector<std::uint32_t> material_of_part, std::size_t states)
     : material_(std::move(material_of_part)), columns_(states * facets.bands) {

@@ -14,6 +14,9 @@ namespace sunfleck {
 /// value[side * columns + column].
 using Field = std::vector<float>;
 
+/// False if all is black: then irradiance is what sun and sky bring, and there is nothing to solve.
+bool anything_scatters(const FacetScene& facets);
+
 /// Optics per part, in the columns' bands.
 class Reflection {
  public:

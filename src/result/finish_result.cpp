@@ -108,6 +108,7 @@ void write_report(OutputFile& file, ArrayWriter& arrays, const SolveReport& repo
   arrays.write(convergence.get(), "iteration", iteration, "1");
   arrays.write(convergence.get(), "residual", residual, "1");
   arrays.write(convergence.get(), "links", links, "1");
+  if (!report.spectral_radius.empty()) write_attribute(file, convergence.get(), "spectral_radius", report.spectral_radius);
   arrays.write(timings.get(), "iteration", seconds, "s");
   arrays.flush();
   // Only /timings and /memory differ between two runs: the seconds live there, and convergence points to them.

@@ -265,6 +265,15 @@ std::vector<IterationRow> Result::convergence() const {
   return out;
 }
 
+std::vector<double> Result::spectral_radius() const {
+  const auto& reader = impl_->reader;
+  if (!reader.has_attribute("convergence", "spectral_radius")) return {};
+  auto values = reader.values_attribute("convergence", "spectral_radius");
+  if (values.size() != impl_->bands.size())
+    reader.fail("convergence/@spectral_radius", std::to_string(values.size()) + " values", std::to_string(impl_->bands.size()));
+  return values;
+}
+
 namespace {
 
 template <class T>

@@ -226,7 +226,7 @@ Absorbed solve(const Problem& p, const std::array<HalfLinks, 2>& half) {
       for (std::size_t i = 0; i < values; ++i) out[h * values + i] *= p.rest[i / bands];
     }
   };
-  gmres(apply, source, weight, bands, 1e-5, 100, x, silent());
+  gmres(apply, source, weight, norms(source, weight, bands), 1e-5, 100, x, silent());
   Field gathered(values, 0.0f), one(values);
   for (std::size_t h = 0; h < 2; ++h) {
     reflection.apply(x.data() + (1 - h) * values, b.data());

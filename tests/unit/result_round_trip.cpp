@@ -130,6 +130,7 @@ TEST_CASE("A result file gives back what was written", "[result]") {
 
   CHECK(result.convergence()[1].links == 120);
   CHECK(result.convergence()[1].seconds == 0.5);
+  CHECK(result.spectral_radius() == std::vector<double>{0.1, 0.8});
   CHECK(result.timings()[1] == std::pair<std::string, double>("links", 1.5));
   CHECK(result.counts()[1].second == 7);
   CHECK(result.memory()[0].second == 4096);

@@ -74,6 +74,7 @@ class Result {
   std::vector<std::vector<Balance>> balance() const;  ///< [s][b]
   StoredProfile profile() const;
   std::vector<IterationRow> convergence() const;
+  std::vector<double> spectral_radius() const;  ///< [b] as in SolveReport; empty where nothing was iterated
   Timings timings() const;
   std::vector<std::pair<std::string, std::uint64_t>> counts() const;
   std::vector<std::pair<std::string, std::uint64_t>> memory() const;  ///< ends with "peak_resident"

@@ -58,6 +58,9 @@ struct SolveReport {
   SolveStatus status = SolveStatus::converged;
   std::vector<std::vector<Balance>> balance;  ///< [s][b]
   std::vector<IterationRow> convergence;
+  /// [b] largest eigenvalue of F R that the iteration has met: how much of the scattered light one more scattering keeps. From below;
+  /// empty where nothing was iterated.
+  std::vector<double> spectral_radius;
   std::vector<std::pair<std::string, std::uint64_t>> counts;  ///< deterministic work: "links", "fragments", "directions", "rays"
   std::vector<std::pair<std::string, std::uint64_t>> memory;  ///< bytes held per phase, counted by the program
   Timings timings;
