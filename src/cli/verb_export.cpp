@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
+#include <map>
 
 #include <fmt/format.h>
 
@@ -16,7 +17,7 @@ namespace sunfleck {
 
 namespace {
 
-const std::vector<std::string> suffixes{".ply", ".csv"};
+const std::vector<std::string> suffixes{".ply", ".obj", ".glb", ".vtkhdf", ".xdmf", ".csv"};
 
 }  // namespace
 
@@ -36,7 +37,9 @@ int verb_export(const ExportOptions& options, Progress& progress) {
   if (options.quantity) choice.quantity = *options.quantity;
   choice.band = band_row(result, options.band);
   if (options.state) choice.state = state_row(result, options.state);
-  export_ply(result, options.output, choice, progress);
+  static const std::map<std::string, decltype(&export_ply)> meshes{
+      {".ply", export_ply}, {".obj", export_obj}, {".glb", export_glb}, {".vtkhdf", export_vtkhdf}, {".xdmf", export_xdmf}};
+  meshes.at(suffix)(result, options.output, choice, progress);
   progress.line(fmt::format("wrote {}: {} facets", options.output, result.facet_count()));
   return 0;
 }

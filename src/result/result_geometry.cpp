@@ -60,4 +60,21 @@ std::vector<std::uint32_t> ResultGeometry::optics(std::size_t first, std::size_t
   return out;
 }
 
+std::vector<std::uint32_t> ResultGeometry::types_of(std::size_t first, std::size_t count) const {
+  std::vector<std::uint32_t> out(count);
+  walk(
+      *this, first, count,
+      [&](const Copy& copy, std::size_t shape, std::size_t, std::size_t n, std::size_t at) {
+        const Plant& plant = *plants[copy.plant].plant;
+        std::fill_n(out.begin() + static_cast<std::ptrdiff_t>(at), n, plant.structures[plant.shapes[shape].structure].type);
+      },
+      [&](std::size_t, std::size_t n, std::size_t at) { std::fill_n(out.begin() + static_cast<std::ptrdiff_t>(at), n, no_parent); });
+  return out;
+}
+
+const std::vector<std::string>& ResultGeometry::types() const {
+  static const std::vector<std::string> none;
+  return plants.empty() ? none : plants.front().plant->types;
+}
+
 }  // namespace sunfleck

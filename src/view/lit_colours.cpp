@@ -17,7 +17,8 @@ constexpr std::size_t most_samples = 1000000;  // facets that set exposure or sc
 }  // namespace
 
 const std::vector<std::string>& mesh_quantities() {
-  static const std::vector<std::string> names{"absorbed", "irradiance_front", "irradiance_back", "sunlit_front", "sunlit_back"};
+  static const std::vector<std::string> names{"absorbed", "irradiance_front", "irradiance_back", "sunlit_front", "sunlit_back", "type",
+                                              "optics"};
   return names;
 }
 
@@ -27,6 +28,7 @@ LitColours::LitColours(const Result& result, const ResultGeometry& geometry, con
       choice_(choice),
       state_(choice.state.value_or(0)),
       natural_(choice.quantity == "colour"),
+      named_(choice.quantity == "type" || choice.quantity == "optics"),
       quantity_(choice.quantity),
       materials_(result.materials()) {
   const auto& known = mesh_quantities();
@@ -39,12 +41,17 @@ LitColours::LitColours(const Result& result, const ResultGeometry& geometry, con
   if (natural_) {
     quantity_ = "absorbed";
     bands_ = colour_bands(result.bands());
-    const OrganTable organs = result.organs();
-    organ_type_ = organs.type;
     for (const auto& material : materials_) {
       auto& row = surfaces_.emplace_back();
-      for (const auto& type : organs.types) row.push_back(surface_of(type, material.name));
+      for (const auto& type : geometry.types()) row.push_back(surface_of(type, material.name));
     }
+  }
+  if (named_) {
+    if (quantity_ == "type") names_ = geometry.types();
+    if (quantity_ == "optics")
+      for (const auto& material : materials_) names_.push_back(material.name);
+    if (quantity_ == "type") names_.push_back("ground");
+    return;
   }
   const std::size_t n = geometry.facet_count(), step = n / most_samples + 1;
   std::vector<float> luminances;
@@ -77,6 +84,11 @@ std::vector<float> LitColours::values(std::size_t first, std::size_t count) cons
   if (quantity_ == "absorbed") pick("facets/absorbed", bands, choice_.band);
   if (quantity_ == "irradiance_front") pick("facets/irradiance", 2 * bands, choice_.band);
   if (quantity_ == "irradiance_back") pick("facets/irradiance", 2 * bands, bands + choice_.band);
+  const auto row_numbers = [&](const std::vector<std::uint32_t>& rows) {
+    for (std::size_t i = 0; i < count; ++i) out[i] = static_cast<float>(std::min<std::size_t>(rows[i], names_.size() - 1));
+  };
+  if (quantity_ == "type") row_numbers(geometry_.types_of(first, count));
+  if (quantity_ == "optics") row_numbers(geometry_.optics(first, count));
   if (quantity_ == "sunlit_front") pick("facets/sunlit", 2, 0);
   if (quantity_ == "sunlit_back") pick("facets/sunlit", 2, 1);
   return out;
@@ -85,10 +97,10 @@ std::vector<float> LitColours::values(std::size_t first, std::size_t count) cons
 std::vector<Rgb> LitColours::light(std::size_t first, std::size_t count) const {
   const std::size_t bands = result_.bands().size();
   const auto irradiance = result_.state_rows<float>("facets/irradiance", state_, first, count);
-  const auto optics = geometry_.optics(first, count), organ = result_.facet_organs(first, count);
+  const auto optics = geometry_.optics(first, count), type = geometry_.types_of(first, count);
   std::vector<Rgb> out(count);
   for (std::size_t i = 0; i < count; ++i) {
-    const Surface surface = first + i >= geometry_.plant_facets ? Surface::soil : surfaces_[optics[i]][organ_type_[organ[i]]];
+    const Surface surface = first + i >= geometry_.plant_facets ? Surface::soil : surfaces_[optics[i]][type[i]];
     const float* e = &irradiance[2 * i * bands];
     out[i] = 0.5f * (facet_colour(bands_, materials_[optics[i]], surface, e, Side::front) +
                      facet_colour(bands_, materials_[optics[i]], surface, e, Side::back));
@@ -96,13 +108,36 @@ std::vector<Rgb> LitColours::light(std::size_t first, std::size_t count) const {
   return out;
 }
 
+std::string LitColours::unit() const {
+  if (named_) return "row";
+  return quantity_.rfind("sunlit", 0) == 0 ? "1" : result_.band_units()[choice_.band];
+}
+
+std::vector<float> LitColours::shades(std::size_t first, std::size_t count) const {
+  auto numbers = values(first, count);
+  if (!natural_) return numbers;
+  const auto colours = light(first, count);
+  std::vector<float> out(4 * count);
+  for (std::size_t i = 0; i < count; ++i) {
+    for (int c = 0; c < 3; ++c) out[4 * i + static_cast<std::size_t>(c)] = colours[i][c];
+    out[4 * i + 3] = numbers[i];
+  }
+  return out;
+}
+
+Rgb8 LitColours::colour(const float* shade) const {
+  if (natural_) return encode_srgb(tone_map(Rgb{shade[0], shade[1], shade[2]}, exposure_));
+  if (named_) return category_color(static_cast<std::size_t>(shade[0] + 0.5f));
+  return color_at(choice_.map, scale_.position(shade[0]));
+}
+
 LitColours::Range LitColours::range(std::size_t first, std::size_t count) const {
-  Range out{std::vector<Rgb8>(count), values(first, count)};
-  if (natural_) {
-    const auto colours = light(first, count);
-    for (std::size_t i = 0; i < count; ++i) out.colours[i] = encode_srgb(tone_map(colours[i], exposure_));
-  } else {
-    for (std::size_t i = 0; i < count; ++i) out.colours[i] = color_at(choice_.map, scale_.position(out.values[i]));
+  Range out{std::vector<Rgb8>(count), std::vector<float>(count)};
+  const auto all = shades(first, count);
+  const std::size_t w = width();
+  for (std::size_t i = 0; i < count; ++i) {
+    out.colours[i] = colour(&all[w * i]);
+    out.values[i] = all[w * i + w - 1];
   }
   return out;
 }

@@ -142,7 +142,7 @@ TEST_CASE("A lit PLY holds every facet, in order, with every stored quantity", "
   SECTION("an unknown quantity") {
     CHECK_THROWS_WITH(export_ply(result, stored.folder / "m.ply", {"absorbd", 0, {}, ColorMap::viridis}, silent()),
                       "--quantity: found 'absorbd'; expected colour, absorbed, irradiance_front, irradiance_back, sunlit_front, "
-                      "sunlit_back (did you mean 'absorbed'?)");
+                      "sunlit_back, type, optics (did you mean 'absorbed'?)");
     CHECK(stored.folder.files() == 1);
   }
 }

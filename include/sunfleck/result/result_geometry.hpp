@@ -38,6 +38,10 @@ struct ResultGeometry {
   std::vector<Triangle> corners(std::size_t first, std::size_t count) const;
   /// Row of the materials, per facet.
   std::vector<std::uint32_t> optics(std::size_t first, std::size_t count) const;
+  /// Row of types() of the structure, per facet; no_parent for the ground.
+  std::vector<std::uint32_t> types_of(std::size_t first, std::size_t count) const;
+  /// Names of structure types, shared by all plants.
+  const std::vector<std::string>& types() const;
 };
 
 }  // namespace sunfleck

@@ -20,7 +20,7 @@ struct MeshChoice {
   ColorMap map = ColorMap::viridis;
 };
 
-/// "absorbed", "irradiance_front", "irradiance_back", "sunlit_front", "sunlit_back".
+/// "absorbed", "irradiance_front", "irradiance_back", "sunlit_front", "sunlit_back"; "type" and "optics" colour by name.
 const std::vector<std::string>& mesh_quantities();
 
 /// Binary little-endian PLY with one face a facet, in the order of /facets, corners counter-clockwise seen from the front. Facets of a
@@ -29,6 +29,25 @@ const std::vector<std::string>& mesh_quantities();
 /// sunlit_front, sunlit_back; "_STATE" is appended where several states are kept. Vertices are doubles [m]. Throws InputError where the
 /// file keeps no facets or no geometry, UsageError for an unknown quantity, OutputError, Stopped.
 void export_ply(const Result& result, const std::string& file, const MeshChoice& choice, Progress& progress);
+
+/// Wavefront OBJ (double precision as text) and FILE.mtl beside it. "v x y z r g b": colours (sRGB codes / 255) are area-weighted means
+/// over the facets of an organ that meet at a vertex. An object per copy, a group organ_N per organ (row N of /organs), one face a facet,
+/// in order.
+void export_obj(const Result& result, const std::string& file, const MeshChoice& choice, Progress& progress);
+
+/// Binary glTF 2.0: positions in single precision [m] about a centre of their own where the scene is more than 1 km off, COLOR_0 (linear,
+/// 16 bits), and _VALUE, the quantity, averaged to vertices as in export_obj. Copies of a plant that share all colours are one mesh with
+/// EXT_mesh_gpu_instancing (without _VALUE). y is up, as glTF wants it, by a turn of the root node. Throws UsageError beyond 4 GiB.
+void export_glb(const Result& result, const std::string& file, const MeshChoice& choice, Progress& progress);
+
+/// VTKHDF 1.0, an UnstructuredGrid of one triangle a facet, in order; cell data: colour (sRGB codes), area [m^2], organ, and the values and
+/// names of export_ply.
+void export_vtkhdf(const Result& result, const std::string& file, const MeshChoice& choice, Progress& progress);
+
+/// XDMF 2, whose values are read from the result file itself (which must stay where it is, seen from the .xdmf); states are time steps 0,
+/// 1,
+/// ... Colours, and the mesh unless the result holds it in world coordinates, go to FILE.xdmf.h5.
+void export_xdmf(const Result& result, const std::string& file, const MeshChoice& choice, Progress& progress);
 
 /// One row an organ (RFC 4180, a header line): organ, plant, placement, name, type, area_m2, then per state and band absorbed_W_BAND,
 /// irradiance_front_BAND, irradiance_back_BAND [W m^-2], and per state sunlit_front, sunlit_back; "_STATE" is appended where there are
