@@ -6,10 +6,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include <sunfleck/core/sampling.hpp>
+#include <sunfleck/core/error.hpp>
 #include <sunfleck/reference/path_sampler.hpp>
 #include <sunfleck/reference/path_tracer.hpp>
 
+#include "audit/organ_choice.hpp"
 #include "error_interval.hpp"
 
 namespace sunfleck {
@@ -19,72 +20,19 @@ namespace {
 constexpr std::uint32_t sun_points = 8;  // a shadow ray is a tenth of a sample's cost, and direct sun most of its variance
 constexpr double least_absorbed = 1e-6;  // of the incident light; below it irradiance is compared
 
-struct Checked {
-  std::uint32_t organ = 0;
-  double share = 0;  ///< of the area of all organs of plants
-  bool certain = false;
-};
-
 /// Rays become dearer as the tree outgrows the caches: about as the root of the number of facets.
 std::uint64_t rays_for(std::size_t facets) {
   return static_cast<std::uint64_t>(2.0e6 * std::clamp(std::sqrt(1e5 / static_cast<double>(facets)), 0.3, 1.0));
 }
 
-/// Organs of plants, rising, drawn with a probability proportional to their area plus three times the mean area: small organs weigh
-/// little but have the largest errors (on a coffee plant organs that make a tenth of the area hold nine tenths of the square error
-/// in NIR), and one drawn by its area alone would weigh as much as a large one. All for sure if there are no more than `wanted`.
-/// Shares of those drawn are area / probability, scaled to the area that they stand for together.
-std::vector<Checked> draw(const FacetScene& facets, const OrganTotals& solved, std::uint32_t wanted, double offset) {
-  std::vector<Checked> population;
-  double total = 0.0;
-  for (std::uint32_t m = 0; m < solved.organs; ++m)
-    if (facets.organs.structure[m] != no_parent && solved.area[m] > 0.0) {
-      population.push_back({m, solved.area[m], false});
-      total += solved.area[m];
-    }
-  const double mean = total / static_cast<double>(std::max<std::size_t>(population.size(), 1));
-  const auto size = [mean](const Checked& c) { return c.share + 3.0 * mean; };
-  double rest = 4.0 * total;
-  std::size_t places = wanted;
-  if (population.size() <= wanted) {
-    for (auto& c : population) c.certain = true;
-  } else {
-    // Those larger than the step are taken for sure; that makes the step for the others smaller, until none is left over.
-    for (bool changed = true; changed && places > 0;) {
-      changed = false;
-      const double step = rest / static_cast<double>(places);
-      for (auto& c : population)
-        if (!c.certain && size(c) >= step && places > 0) c.certain = changed = true, rest -= size(c), --places;
-    }
-  }
-  std::vector<Checked> chosen;
-  const double step = rest / static_cast<double>(std::max<std::size_t>(places, 1));
-  double passed = 0.0, next = offset * step, by_chance = 0.0, drawn = 0.0;
-  for (const auto& c : population) {
-    if (c.certain) {
-      chosen.push_back({c.organ, c.share / total, true});
-      continue;
-    }
-    by_chance += c.share / total;
-    passed += size(c);
-    if (places == 0 || passed <= next) continue;
-    chosen.push_back({c.organ, c.share / size(c), false});
-    drawn += chosen.back().share;
-    next += step;
-  }
-  for (auto& c : chosen)
-    if (!c.certain) c.share *= by_chance / drawn;
-  return chosen;
-}
-
-std::vector<SampleTarget> targets_of(const FacetScene& facets, const std::vector<Checked>& chosen) {
-  std::vector<std::uint32_t> place(facets.organs.size(), no_facet);
-  for (std::uint32_t k = 0; k < chosen.size(); ++k) place[chosen[k].organ] = k;
-  std::vector<std::vector<std::uint32_t>> rows(chosen.size());
-  for (std::uint32_t f = 0; f < facets.plant_facets; ++f)
-    if (const auto k = place[facets.organ[f]]; k != no_facet) rows[k].push_back(f);
+std::vector<SampleTarget> targets_of(const FacetRows& rows, const FacetScene& facets, const std::vector<ChosenOrgan>& chosen) {
   std::vector<SampleTarget> targets;
-  for (std::uint32_t k = 0; k < chosen.size(); ++k) targets.emplace_back(facets, std::move(rows[k]), chosen[k].organ);
+  for (const auto& c : chosen) {
+    const auto [copy, organ] = rows.organ_at(c.organ);
+    std::vector<std::uint32_t> numbers = rows.organ_facets(copy, organ);
+    for (auto& f : numbers) f += static_cast<std::uint32_t>(rows.first_facet(copy));
+    targets.emplace_back(facets, std::move(numbers), c.organ);
+  }
   return targets;
 }
 
@@ -118,14 +66,16 @@ Measured measure(const PathSampler& sampler, const SampleTarget& target, std::ui
   return out;
 }
 
-/// Solved light per area: absorbed, or irradiance front + back.
-double solved_per_area(const OrganTotals& solved, std::size_t s, std::size_t organ, std::size_t b, bool irradiance) {
-  if (!irradiance) return solved.absorbed_power(s, organ, b) / solved.area[organ];
-  const double* sides = &solved.irradiance[((s * solved.organs + organ) * 2) * solved.bands + b];
-  return (sides[0] + sides[solved.bands]) / solved.area[organ];
+/// Solved light per area of an organ: absorbed, or irradiance front + back.
+double solved_per_area(const OrganTotals& solved, std::size_t s, std::size_t k, std::size_t b, bool irradiance) {
+  if (!(solved.area[k] > 0.0)) return 0.0;
+  if (!irradiance) return solved.absorbed_power(s, k, b) / solved.area[k];
+  const double* sides = &solved.irradiance[((s * solved.organs.size() + k) * 2) * solved.bands + b];
+  return (sides[0] + sides[solved.bands]) / solved.area[k];
 }
 
-void estimate_band(std::size_t b, const FacetScene& facets, const OrganTotals& solved, const std::vector<Checked>& chosen,
+/// `place` [k] says where the chosen ones are among those of `solved`.
+void estimate_band(std::size_t b, const OrganTotals& solved, const std::vector<ChosenOrgan>& chosen, const std::vector<std::size_t>& place,
                    const std::vector<Measured>& measured, bool irradiance, Certificate& out) {
   constexpr double freedom = reference_randomisations - 1.0;
   const double states = static_cast<double>(solved.states);
@@ -137,7 +87,7 @@ void estimate_band(std::size_t b, const FacetScene& facets, const OrganTotals& s
       const std::size_t i = s * solved.bands + b;
       const double r = irradiance ? measured[k].irradiance[i] : measured[k].absorbed[i];
       const double v = irradiance ? measured[k].irradiance_variance[i] : measured[k].absorbed_variance[i];
-      const double d = solved_per_area(solved, s, chosen[k].organ, b, irradiance) - r, square = d * d - v;
+      const double d = solved_per_area(solved, s, place[k], b, irradiance) - r, square = d * d - v;
       error.difference += d / states;
       error.square += square / states;
       noise += std::sqrt(v) / states;
@@ -148,13 +98,10 @@ void estimate_band(std::size_t b, const FacetScene& facets, const OrganTotals& s
     errors.push_back(error);
   }
   const ErrorEstimate estimate = estimate_error(errors);
-  double light = 0.0, area = 0.0;
-  for (std::size_t m = 0; m < solved.organs; ++m) {
-    if (facets.organs.structure[m] == no_parent || !(solved.area[m] > 0.0)) continue;
-    area += solved.area[m];
-    for (std::size_t s = 0; s < solved.states; ++s) light += solved.area[m] * solved_per_area(solved, s, m, b, irradiance) / states;
-  }
-  const double mean = area > 0.0 ? light / area - estimate.bias : 0.0;
+  double light = 0.0;
+  for (std::size_t s = 0; s < solved.states; ++s)
+    light += (irradiance ? solved.plant_irradiance : solved.plant_absorbed)[s * solved.bands + b] / states;
+  const double mean = solved.plant_area > 0.0 ? light / solved.plant_area - estimate.bias : 0.0;
   const auto relative = [mean](double value) { return mean > 0.0 ? value / mean : 0.0; };  // no light at all: no error either
   out.rmse.push_back(relative(estimate.rmse));
   out.rmse_low.push_back(relative(estimate.low));
@@ -165,22 +112,22 @@ void estimate_band(std::size_t b, const FacetScene& facets, const OrganTotals& s
 
 }  // namespace
 
-Certificate certify(const Scene& scene, const FacetScene& facets, const OrganTotals& solved,
-                    const std::vector<std::vector<Balance>>& balance, const CertificateSettings& settings, Progress& progress) {
+Certificate certify(const Scene& scene, const FacetRows& rows, const FacetScene& facets, const std::vector<ChosenOrgan>& candidates,
+                    const OrganTotals& solved, const std::vector<std::vector<Balance>>& balance, const CertificateSettings& settings,
+                    Progress& progress) {
+  if (solved.organs.size() != candidates.size()) throw Error("certificate: the solved light of other organs than those chosen");
   Certificate out;
   out.seed = settings.seed;
-  const std::uint64_t seed = mix(settings.seed, 0x6365727469667921ULL);  // not the numbers of the solve, nor of the reference method
-  const double offset = unit_interval(mix(seed, 0));
   tbb::task_arena arena(settings.threads > 0 ? settings.threads : tbb::task_arena::automatic);
   const RayScene rays(facets);
-  const PathSampler sampler(scene, facets, rays, seed);
+  const PathSampler sampler(scene, facets, rays, certificate_seed(settings));
   progress.check();
 
-  auto chosen = draw(facets, solved, settings.organs, offset);
+  auto chosen = candidates;
   std::vector<Measured> measured;
   if (!chosen.empty()) {
     // What a sample costs: one of each randomisation on a few organs. Counted in rays, so the same everywhere.
-    auto targets = targets_of(facets, chosen);
+    auto targets = targets_of(rows, facets, chosen);
     const std::size_t pilots = std::min<std::size_t>(16, targets.size());
     std::vector<std::uint64_t> cost(pilots);
     arena.execute([&] {
@@ -191,10 +138,11 @@ Certificate certify(const Scene& scene, const FacetScene& facets, const OrganTot
     for (const auto c : cost) pilot_rays += c;
     out.rays += pilot_rays;
     const double per_pass = std::max(1.0, static_cast<double>(pilot_rays) / static_cast<double>(pilots));  // 16 samples of one organ
-    const double passes = static_cast<double>(settings.rays > 0 ? settings.rays : rays_for(facets.size())) / per_pass;
-    if (passes < static_cast<double>(chosen.size())) {
-      chosen = draw(facets, solved, std::min<std::uint32_t>(settings.organs, std::max(64u, static_cast<std::uint32_t>(passes))), offset);
-      targets = targets_of(facets, chosen);
+    const double passes = static_cast<double>(settings.rays > 0 ? settings.rays : rays_for(rows.placed().facets)) / per_pass;
+    const std::size_t affordable = std::max<std::size_t>(64, static_cast<std::size_t>(passes));
+    if (affordable < chosen.size()) {
+      chosen = choose_fewer(chosen, static_cast<std::uint32_t>(affordable), settings);
+      targets = targets_of(rows, facets, chosen);
     }
     const auto count = static_cast<std::uint32_t>(std::clamp(passes / static_cast<double>(chosen.size()), 1.0, 65536.0));
     measured.resize(chosen.size());
@@ -208,12 +156,17 @@ Certificate certify(const Scene& scene, const FacetScene& facets, const OrganTot
     progress.fraction("certificate", 1.0);
   }
 
-  for (const auto& c : chosen) out.organs.push_back(c.organ);
+  std::vector<std::size_t> place;  // among those whose light was kept
+  for (const auto& c : chosen) {
+    out.organs.push_back(c.organ);
+    place.push_back(
+        static_cast<std::size_t>(std::lower_bound(solved.organs.begin(), solved.organs.end(), c.organ) - solved.organs.begin()));
+  }
   for (std::size_t s = 0; s < solved.states; ++s)
     for (std::size_t k = 0; k < chosen.size(); ++k)
       for (std::size_t b = 0; b < solved.bands; ++b) {
-        const double area = solved.area[chosen[k].organ];
-        out.solved.push_back(static_cast<float>(solved.absorbed_power(s, chosen[k].organ, b)));
+        const double area = solved.area[place[k]];
+        out.solved.push_back(static_cast<float>(solved.absorbed_power(s, place[k], b)));
         out.reference.push_back(static_cast<float>(area * measured[k].absorbed[s * solved.bands + b]));
         out.standard_error.push_back(static_cast<float>(area * std::sqrt(measured[k].absorbed_variance[s * solved.bands + b])));
       }
@@ -221,7 +174,7 @@ Certificate certify(const Scene& scene, const FacetScene& facets, const OrganTot
   for (std::size_t b = 0; b < solved.bands; ++b) {
     double leaves = 0.0, incident = 0.0;
     for (const auto& state : balance) leaves += state[b].leaves, incident += state[b].incident;
-    estimate_band(b, facets, solved, chosen, measured, incident > 0.0 && leaves < least_absorbed * incident, out);
+    estimate_band(b, solved, chosen, place, measured, incident > 0.0 && leaves < least_absorbed * incident, out);
   }
   return out;
 }

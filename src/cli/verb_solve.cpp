@@ -85,17 +85,26 @@ int verb_solve(const SolveOptions& options, Progress& progress) {
   say_what_was_read(scene, facets, read_seconds, progress);
   progress.check();
 
-  ResultWriter writer(options.result, scene, facets, scene.output, software_version(), choice.method);
+  const PlacedScene placed = place(scene);
+  const FacetRows rows(scene, placed);
+  CertificateSettings checking;
+  checking.seed = seed;
+  checking.threads = options.threads;
+  std::vector<ChosenOrgan> chosen;
+  ResultWriter writer(options.result, scene, placed, scene.output, software_version(), choice.method);
+  if (wants_certificate(choice, scene, facets, options)) {
+    chosen = choose_organs(rows, checking);
+    std::vector<std::uint64_t> organs;
+    for (const auto& c : chosen) organs.push_back(c.organ);
+    writer.keep_totals(std::move(organs));
+  }
   SolveReport report = run_method(choice, scene, facets, options, seed, writer, progress);
   report.timings.emplace(report.timings.begin(), "read", read_seconds);
 
   std::optional<Certificate> certificate;
   if (wants_certificate(choice, scene, facets, options)) {
     const Stopwatch watch;
-    CertificateSettings settings;
-    settings.seed = seed;
-    settings.threads = options.threads;
-    certificate = certify(scene, facets, writer.totals(), report.balance, settings, progress);
+    certificate = certify(scene, rows, facets, chosen, writer.totals(), report.balance, checking, progress);
     add_seconds(report.timings, "certificate", watch.seconds());
   }
   progress.check();

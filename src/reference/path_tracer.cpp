@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include <sunfleck/core/memory.hpp>
 #include <sunfleck/core/timer.hpp>
 #include <sunfleck/reference/path_sampler.hpp>
 
@@ -37,7 +36,7 @@ class Block {
   }
 
   /// Means of the randomisations into rows [s][count]..., balance and variances, facet by facet in order.
-  void collect(std::size_t first, std::size_t count, SolveReport& report, std::vector<double>& organ_variance, std::uint64_t& rays) {
+  void collect(std::size_t first, std::size_t count, SolveReport& report, std::uint64_t& rays) {
     constexpr double n = reference_randomisations;
     for (std::size_t i = 0; i < count; ++i) {
       const std::size_t facet = first + i;
@@ -62,7 +61,6 @@ class Block {
           }
           const double variance = square / (n * (n - 1.0));
           variance_[(s * count + i) * bands_ + b] = static_cast<float>(variance);
-          organ_variance[(s * facets_.organs.size() + facets_.organ[facet]) * bands_ + b] += area * area * variance;
           auto& balance = report.balance[s][b];
           balance.incident +=
               area * (mean(&SampleMeans::direct, 2 * s * bands_ + b) + mean(&SampleMeans::direct, (2 * s + 1) * bands_ + b));
@@ -107,14 +105,13 @@ SolveReport trace_reference(const Scene& scene, const FacetScene& facets, const 
                                                     (std::size_t{1} << 20) / (reference_randomisations * states * (5 * bands + 2))),
                               1, 4096);
   Block block(facets, sampler, std::min(block_size, n));
-  std::vector<double> organ_variance(states * facets.organs.size() * bands, 0.0);
   std::uint64_t ray_count = 0;
   for (std::size_t first = 0; first < n; first += block_size) {
     progress.check();
     progress.fraction("reference", static_cast<double>(first) / static_cast<double>(n));
     const std::size_t count = std::min(block_size, n - first);
     arena.execute([&] { block.trace(first, count, samples); });
-    block.collect(first, count, report, organ_variance, ray_count);
+    block.collect(first, count, report, ray_count);
     sink.rows(block.rows(first, count));
   }
   progress.fraction("reference", 1.0);
@@ -129,11 +126,10 @@ SolveReport trace_reference(const Scene& scene, const FacetScene& facets, const 
     for (std::size_t b = 0; b < bands; ++b) report.balance[s][b].escaped = report.balance[s][b].incident * escape.share[s * bands + b];
   add_seconds(report.timings, "balance", balancing.seconds());
 
-  report.organ_variance.absorbed.assign(organ_variance.begin(), organ_variance.end());
   report.counts = {{"samples per facet", std::uint64_t{samples} * reference_randomisations},
                    {"rays", ray_count + escape.rays},
                    {"stacked pairs", rays.stacked_pairs()}};
-  report.memory = {{"tree of rays", rays.bytes()}, {"sums of organs", bytes_of(organ_variance)}};
+  report.memory = {{"tree of rays", rays.bytes()}};
   return report;
 }
 

@@ -29,7 +29,7 @@ struct Meshes {
 };
 
 /// Ground facets with shared corners.
-Mesh ground_mesh(const FacetScene& facets) {
+Mesh ground_mesh(const std::vector<Triangle>& facets) {
   struct Hash {
     std::size_t operator()(const std::array<double, 3>& p) const {
       std::size_t h = 0;
@@ -39,10 +39,10 @@ Mesh ground_mesh(const FacetScene& facets) {
   };
   Mesh mesh;
   std::unordered_map<std::array<double, 3>, std::uint32_t, Hash> known;
-  for (std::size_t f = facets.plant_facets; f < facets.size(); ++f) {
+  for (const auto& corners : facets) {
     std::array<std::uint32_t, 3> triangle;
     for (std::size_t c = 0; c < 3; ++c) {
-      const Vec3& p = facets.corners[f][c];
+      const Vec3& p = corners[c];
       const auto [place, added] = known.try_emplace({p.x, p.y, p.z}, static_cast<std::uint32_t>(mesh.vertices.size()));
       if (added) mesh.vertices.push_back(p);
       triangle[c] = place->second;
@@ -54,7 +54,7 @@ Mesh ground_mesh(const FacetScene& facets) {
 
 }  // namespace
 
-void write_geometry(OutputFile& file, ArrayWriter& arrays, const Scene& scene, const FacetScene& facets) {
+void write_geometry(OutputFile& file, ArrayWriter& arrays, const Scene& scene, const PlacedScene& placed) {
   Meshes meshes;
   std::map<const Plant*, std::uint32_t> model_of;
   std::vector<std::string> types, plant_names;
@@ -91,14 +91,13 @@ void write_geometry(OutputFile& file, ArrayWriter& arrays, const Scene& scene, c
     plant_optics.insert(plant_optics.end(), entry.shape_optics.begin(), entry.shape_optics.end());
     plant_first_optics.push_back(plant_optics.size());
   }
-  std::uint64_t facet = 0;
-  for (std::size_t c = 0; c < facets.copies.size(); ++c) {
-    push(copy_map, facets.copies[c]);
-    copy_first_facet.push_back(facet);
-    facet += scene.plants[facets.copy_plant[c]].plant->facet_count();
+  std::vector<std::uint32_t> copy_plant;
+  for (const auto& copy : placed.copies) {
+    push(copy_map, copy.map);
+    copy_plant.push_back(copy.plant);
+    copy_first_facet.push_back(copy.first_facet);
   }
-  const bool ground = facets.plant_facets < facets.size();
-  if (ground) meshes.add(ground_mesh(facets));  // the last mesh
+  if (!placed.ground.empty()) meshes.add(ground_mesh(placed.ground));  // the last mesh
 
   const Id group = make_group(file, file.id(), "geometry");
   const hid_t g = group.get();
@@ -120,15 +119,15 @@ void write_geometry(OutputFile& file, ArrayWriter& arrays, const Scene& scene, c
   arrays.write(g, "plant_model", plant_model, "model");
   arrays.write(g, "plant_first_optics", plant_first_optics, "row of plant_shape_optics");
   arrays.write(g, "plant_shape_optics", plant_optics, "row of /optics");
-  arrays.write(g, "copy_plant", facets.copy_plant, "row of plant_name");
-  arrays.write(g, "copy_map", copy_map.data(), {facets.copies.size(), 3, 4}, "m");
+  arrays.write(g, "copy_plant", copy_plant, "row of plant_name");
+  arrays.write(g, "copy_map", copy_map.data(), {placed.copies.size(), 3, 4}, "m");
   arrays.write(g, "copy_first_facet", copy_first_facet, "row of /facets");
-  const std::vector<double> cell = facets.periodic ? std::vector<double>{facets.periodic->x_low, facets.periodic->y_low,
-                                                                         facets.periodic->x_high, facets.periodic->y_high}
-                                                   : std::vector<double>{};
-  if (facets.periodic) arrays.write(g, "periodic_cell", cell, "m");
-  write_attribute(file, g, "plant_facets", facets.plant_facets);
-  write_attribute(file, g, "ground_facets", facets.size() - facets.plant_facets);
+  const std::vector<double> cell =
+      scene.periodic ? std::vector<double>{scene.periodic->x_low, scene.periodic->y_low, scene.periodic->x_high, scene.periodic->y_high}
+                     : std::vector<double>{};
+  if (scene.periodic) arrays.write(g, "periodic_cell", cell, "m");
+  write_attribute(file, g, "plant_facets", placed.first_ground_facet);
+  write_attribute(file, g, "ground_facets", std::uint64_t{placed.ground.size()});
   arrays.flush();
 }
 

@@ -5,7 +5,7 @@
 
 namespace sunfleck::h5 {
 
-void write_light_and_optics(OutputFile& file, ArrayWriter& arrays, const Scene& scene, const FacetScene& facets) {
+void write_light_and_optics(OutputFile& file, ArrayWriter& arrays, const Scene& scene, const std::vector<Optics>& materials) {
   const std::size_t bands = scene.band_count(), states = scene.states.size();
   const Id bands_group = make_group(file, file.id(), "bands");
   arrays.write_strings(bands_group.get(), "name", scene.bands);
@@ -42,10 +42,10 @@ void write_light_and_optics(OutputFile& file, ArrayWriter& arrays, const Scene& 
   arrays.write_strings(group.get(), "sky_model", sky_models);
   arrays.write(group.get(), "sky_irradiance", sky_irradiance.data(), {states, bands}, "W m^-2");
 
-  std::vector<std::string> materials;
+  std::vector<std::string> material_names;
   std::vector<float> front, back, transmittance;
-  for (const auto& m : facets.materials) {
-    materials.push_back(m.name);
+  for (const auto& m : materials) {
+    material_names.push_back(m.name);
     front.insert(front.end(), m.reflectance_front.begin(), m.reflectance_front.end());
     back.insert(back.end(), m.reflectance_back.begin(), m.reflectance_back.end());
     transmittance.insert(transmittance.end(), m.transmittance.begin(), m.transmittance.end());
@@ -57,7 +57,7 @@ void write_light_and_optics(OutputFile& file, ArrayWriter& arrays, const Scene& 
       const auto& structure = entry.plant->structures[entry.plant->shapes[i].structure];
       pairs.emplace(entry.plant->types[structure.type], entry.shape_optics[i]);
     }
-  if (scene.ground) pairs.emplace("ground", static_cast<std::uint32_t>(facets.materials.size() - 1));
+  if (scene.ground) pairs.emplace("ground", static_cast<std::uint32_t>(materials.size() - 1));
   std::vector<std::string> type;
   std::vector<std::uint32_t> type_material;
   for (const auto& [t, m] : pairs) {
@@ -65,7 +65,7 @@ void write_light_and_optics(OutputFile& file, ArrayWriter& arrays, const Scene& 
     type_material.push_back(m);
   }
   const Id optics = make_group(file, file.id(), "optics");
-  arrays.write_strings(optics.get(), "name", materials);
+  arrays.write_strings(optics.get(), "name", material_names);
   arrays.write(optics.get(), "reflectance_front", front.data(), {materials.size(), bands}, "1");
   arrays.write(optics.get(), "reflectance_back", back.data(), {materials.size(), bands}, "1");
   arrays.write(optics.get(), "transmittance", transmittance.data(), {materials.size(), bands}, "1");
@@ -74,18 +74,13 @@ void write_light_and_optics(OutputFile& file, ArrayWriter& arrays, const Scene& 
   arrays.flush();
 }
 
-void write_organ_names(OutputFile& file, ArrayWriter& arrays, hid_t organs_group, const FacetScene& facets) {
-  const auto& organs = facets.organs;
-  const Id names = make_group(file, file.id(), "names");
-  arrays.write_strings(names.get(), "organ", organs.names);
-  arrays.write_strings(names.get(), "type", organs.types);
-  arrays.write_strings(names.get(), "plant", organs.plants);
-  arrays.write_strings(names.get(), "placement", organs.placements);
-  arrays.write(organs_group, "name", organs.name, "row of /names/organ");
-  arrays.write(organs_group, "type", organs.type, "row of /names/type");
-  arrays.write(organs_group, "plant", organs.plant, "row of /names/plant");
-  arrays.write(organs_group, "placement", organs.placement, "row of /names/placement");
-  arrays.write(organs_group, "structure", organs.structure, "row of the plant's structures in /geometry, 4294967295 = ground");
+void write_names(OutputFile& file, ArrayWriter& arrays, const OrganNames& names, std::vector<std::string> placements) {
+  const Id group = make_group(file, file.id(), "names");
+  arrays.write_strings(group.get(), "organ", names.names);
+  arrays.write_strings(group.get(), "type", names.types);
+  arrays.write_strings(group.get(), "plant", names.plants);
+  if (!names.ground.name.empty()) placements.push_back("ground");
+  arrays.write_strings(group.get(), "placement", placements);
   arrays.flush();
 }
 

@@ -1,28 +1,15 @@
 #include "result/finish_result.hpp"
 
+#include <limits>
+
 #include <sunfleck/core/memory.hpp>
 
 namespace sunfleck::h5 {
 
 namespace {
 
-std::vector<float> as_float(const std::vector<double>& values) {
-  return {values.begin(), values.end()};
-}
-
-/// sums[...][m][inner] / area[m], zero where there is no area.
-std::vector<float> per_area(const std::vector<double>& sums, const OrganTotals& totals, std::size_t inner) {
-  std::vector<float> out(sums.size());
-  for (std::size_t i = 0; i < sums.size(); ++i) {
-    const double area = totals.area[(i / inner) % totals.organs];
-    out[i] = area > 0 ? static_cast<float>(sums[i] / area) : 0.0f;
-  }
-  return out;
-}
-
-void write_balance(OutputFile& file, ArrayWriter& arrays, const SolveReport& report, const OrganTotals& totals,
+void write_balance(OutputFile& file, ArrayWriter& arrays, const SolveReport& report, std::size_t states, std::size_t bands,
                    const HeightProfile& profile) {
-  const std::size_t states = totals.states, bands = totals.bands;
   std::vector<double> columns[8];
   const char* names[8] = {"incident", "leaves", "ground", "escaped", "residual", "absorbed_fraction_leaves", "absorbed_fraction_ground",
                           "albedo"};
@@ -43,10 +30,14 @@ void write_balance(OutputFile& file, ArrayWriter& arrays, const SolveReport& rep
   arrays.flush();
 }
 
-void write_certificate(OutputFile& file, ArrayWriter& arrays, const Certificate& c, const OrganTotals& totals) {
-  const std::vector<std::size_t> dims{totals.states, c.organs.size(), totals.bands};
+void write_certificate(OutputFile& file, ArrayWriter& arrays, const Certificate& c, std::size_t states, std::size_t bands) {
+  const std::vector<std::size_t> dims{states, c.organs.size(), bands};
   const Id group = make_group(file, file.id(), "certificate");
-  arrays.write(group.get(), "organs", c.organs, "row of /organs");
+  const std::vector<std::uint32_t> narrow(c.organs.begin(), c.organs.end());
+  if (!c.organs.empty() && c.organs.back() > std::numeric_limits<std::uint32_t>::max())
+    arrays.write(group.get(), "organs", c.organs, "row of /organs");
+  else
+    arrays.write(group.get(), "organs", narrow, "row of /organs");
   arrays.write_states(group.get(), "solved", c.solved.data(), dims, "W");
   arrays.write_states(group.get(), "reference", c.reference.data(), dims, "W");
   arrays.write_states(group.get(), "standard_error", c.standard_error.data(), dims, "W");
@@ -78,20 +69,10 @@ void write_pairs(OutputFile& file, ArrayWriter& arrays, hid_t group, const std::
 
 }  // namespace
 
-void write_organ_values(ArrayWriter& arrays, hid_t group, const OrganTotals& totals, const std::function<bool(const char*)>& keeps) {
-  const std::size_t s = totals.states, m = totals.organs, b = totals.bands;
-  arrays.write(group, "area", as_float(totals.area), "m^2");
-  if (keeps("organs/irradiance"))
-    arrays.write_states(group, "irradiance", per_area(totals.irradiance, totals, 2 * b).data(), {s, m, 2, b}, "W m^-2");
-  if (keeps("organs/absorbed")) arrays.write_states(group, "absorbed", as_float(totals.absorbed).data(), {s, m, b}, "W");
-  if (keeps("organs/sunlit")) arrays.write_states(group, "sunlit", per_area(totals.sunlit, totals, 2).data(), {s, m, 2}, "1");
-  arrays.flush();
-}
-
-void write_report(OutputFile& file, ArrayWriter& arrays, const SolveReport& report, const Certificate* certificate,
-                  const OrganTotals& totals, const HeightProfile& profile) {
+void write_report(OutputFile& file, ArrayWriter& arrays, const SolveReport& report, const Certificate* certificate, std::size_t states,
+                  std::size_t bands, const HeightProfile& profile) {
   write_attribute(file, file.id(), "status", report.status == SolveStatus::converged ? "converged" : "not_converged");
-  write_balance(file, arrays, report, totals, profile);
+  write_balance(file, arrays, report, states, bands, profile);
 
   std::vector<std::uint32_t> level, iteration;
   std::vector<double> residual, seconds;
@@ -119,7 +100,7 @@ void write_report(OutputFile& file, ArrayWriter& arrays, const SolveReport& repo
   write_pairs(file, arrays, counts.get(), report.counts, "value", "1");
   write_pairs(file, arrays, memory.get(), report.memory, "bytes", "byte");
   write_attribute(file, memory.get(), "peak_resident_bytes", peak_resident_bytes());
-  if (certificate) write_certificate(file, arrays, *certificate, totals);
+  if (certificate) write_certificate(file, arrays, *certificate, states, bands);
 }
 
 }  // namespace sunfleck::h5

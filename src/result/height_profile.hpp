@@ -2,10 +2,9 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <vector>
 
-#include <sunfleck/scene/facets.hpp>
+#include <sunfleck/scene/facet_rows.hpp>
 
 namespace sunfleck {
 
@@ -14,9 +13,12 @@ class HeightProfile {
  public:
   static constexpr std::size_t layers = 20;
   HeightProfile() = default;
-  HeightProfile(const FacetScene& facets, std::size_t states);
-  void add_absorbed(std::size_t state, std::size_t facet, std::size_t band, double power) {
-    absorbed[(state * layers + layer_[facet]) * bands_ + band] += power;
+  /// Looks at all facets once for the lowest and the highest.
+  HeightProfile(const FacetRows& facets, std::size_t states, std::size_t bands);
+  std::size_t layer(const Triangle& corners) const;
+  void add_area(std::size_t layer, double facet_area) { area[layer] += facet_area; }
+  void add_absorbed(std::size_t state, std::size_t layer, std::size_t band, double power) {
+    absorbed[(state * layers + layer) * bands_ + band] += power;
   }
 
   std::vector<double> height;    ///< [layers + 1] edges [m]
@@ -25,7 +27,7 @@ class HeightProfile {
 
  private:
   std::size_t bands_ = 1;
-  std::vector<std::uint8_t> layer_;  ///< [plant facets]
+  double low_ = 0, scale_ = 0;
 };
 
 }  // namespace sunfleck

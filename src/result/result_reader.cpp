@@ -11,7 +11,7 @@ namespace sunfleck {
 
 namespace {
 
-constexpr std::size_t most_facets = std::size_t{1} << 31;
+constexpr std::size_t most_rows = std::size_t{1} << 48;  // sizes and products of them stay far from wrapping around
 
 }  // namespace
 
@@ -73,7 +73,7 @@ class Result::Impl {
     const std::size_t s = states.size(), b = bands.size();
     const auto rows_of = [&](const std::string& name) {
       const auto dims = reader.shape(name);
-      if (dims.size() != 1 || dims[0] > most_facets) reader.fail(name, h5::shape_text(dims), "one row each, at most 2^31");
+      if (dims.size() != 1 || dims[0] > most_rows) reader.fail(name, h5::shape_text(dims), "one row each, at most 2^48");
       return dims[0];
     };
     organs = rows_of("organs/area");
@@ -312,7 +312,7 @@ std::optional<Certificate> Result::certificate() const {
   const auto& reader = impl_->reader;
   if (!reader.has("certificate")) return std::nullopt;
   Certificate c;
-  c.organs = reader.all<std::uint32_t>("certificate/organs");
+  c.organs = reader.all<std::uint64_t>("certificate/organs");
   for (const auto o : c.organs)
     if (o >= impl_->organs) reader.fail("certificate/organs", "row " + std::to_string(o), "a row below " + std::to_string(impl_->organs));
   const std::vector<std::size_t> dims{impl_->states.size(), c.organs.size(), impl_->bands.size()};

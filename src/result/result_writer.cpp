@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include <fmt/core.h>
 
@@ -10,6 +11,8 @@
 
 #include "result/describe_scene.hpp"
 #include "result/finish_result.hpp"
+#include "result/height_profile.hpp"
+#include "result/organ_rows.hpp"
 #include "result/sha256.hpp"
 
 namespace sunfleck {
@@ -32,23 +35,22 @@ std::vector<std::string> checked_fields(const OutputChoice& output, const Scene&
 
 }  // namespace
 
+/// /facets and the sums: rows come in, are cut at copies, and go to the file.
 class ResultWriter::Impl {
  public:
-  Impl(const std::string& path, const Scene& scene, const FacetScene& facets, const OutputChoice& output,
+  Impl(const std::string& path, const Scene& scene, const PlacedScene& placed, const OutputChoice& output,
        const std::string& software_version, const std::string& method)
-      : scene_(scene), facets_(facets), fields_(checked_fields(output, scene)), keep_facets_(output.facets), file_(path), queue_(file_) {
+      : rows_(scene, placed),
+        fields_(checked_fields(output, scene)),
+        states_(scene.states.size()),
+        bands_(scene.band_count()),
+        file_(path),
+        queue_(file_),
+        names_(organ_names(rows_)) {
     const h5::Quiet quiet;
-    totals_.states = scene.states.size();
-    totals_.organs = facets.organs.size();
-    totals_.bands = facets.bands;
-    totals_.irradiance.assign(totals_.states * totals_.organs * 2 * totals_.bands, 0.0);
-    totals_.absorbed.assign(totals_.states * totals_.organs * totals_.bands, 0.0);
-    totals_.sunlit.assign(totals_.states * totals_.organs * 2, 0.0);
-    totals_.area.assign(totals_.organs, 0.0);
-    for (std::size_t f = 0; f < facets.size(); ++f) totals_.area[facets.organ[f]] += facets.area[f];
-    profile_ = HeightProfile(facets, totals_.states);
-    for (const auto& m : facets.materials)
-      for (std::size_t b = 0; b < totals_.bands; ++b) {
+    profile_ = HeightProfile(rows_, states_, bands_);
+    for (const auto& m : rows_.materials())
+      for (std::size_t b = 0; b < bands_; ++b) {
         absorptance_.push_back(1.0 - double{m.reflectance_front[b]} - double{m.transmittance[b]});
         absorptance_.push_back(1.0 - double{m.reflectance_back[b]} - double{m.transmittance[b]});
       }
@@ -63,44 +65,57 @@ class ResultWriter::Impl {
     h5::write_attribute(file_, file_.id(), "scene_sha256", sha256_hex(scene.text));
 
     h5::ArrayWriter arrays(file_, queue_);
-    h5::write_light_and_optics(file_, arrays, scene, facets);
-    organs_group_ = h5::make_group(file_, file_.id(), "organs");
-    h5::write_organ_names(file_, arrays, organs_group_.get(), facets);
-    if (keeps("geometry")) h5::write_geometry(file_, arrays, scene, facets);
-    if (keep_facets_) begin_facets(arrays);
+    h5::write_light_and_optics(file_, arrays, scene, rows_.materials());
+    h5::write_names(file_, arrays, names_, placed.paths);
+    if (keeps("geometry")) h5::write_geometry(file_, arrays, scene, placed);
+    organs_.emplace(file_, queue_, rows_, names_, states_, bands_, [this](const char* name) { return keeps(name); });
+    if (output.facets) begin_facets();
+    organs_->begin(copy_);
+    end_complete_copies();
+  }
+
+  void keep_totals(std::vector<std::uint64_t> organs) {
+    if (next_facet_ > 0) throw Error("organs whose totals are to be kept must be named before the first rows");
+    if (!std::is_sorted(organs.begin(), organs.end()) || (!organs.empty() && organs.back() >= rows_.placed().organs))
+      throw Error("organs whose totals are to be kept must be rows of the scene, rising");
+    organs_->totals = OrganTotals(states_, bands_, std::move(organs));
   }
 
   void rows(const IrradianceRows& r) {
     const h5::Quiet quiet;
-    if (r.first_facet != next_facet_ || r.count > facets_.size() - next_facet_)
+    const std::uint64_t facets = rows_.placed().facets;
+    if (r.first_facet != next_facet_ || r.count > facets - next_facet_)
       throw Error(fmt::format("{}: rows {} to {} of {} facets arrived where row {} was due", file_.path(), r.first_facet,
-                              r.first_facet + r.count, facets_.size(), next_facet_));
-    for (std::size_t s = 0; s < totals_.states; ++s) state_rows(r, s);
-    next_facet_ += r.count;
+                              r.first_facet + r.count, facets, next_facet_));
+    constexpr std::uint64_t piece = 16384;  // scratch of a few MB, however many rows come at once
+    for (std::size_t at = 0; at < r.count;) {
+      const std::uint64_t first = next_facet_ - rows_.first_facet(copy_);
+      const std::uint64_t count = std::min({piece, rows_.facet_count(copy_) - first, std::uint64_t{r.count - at}});
+      look_at(first, count);
+      for (std::size_t s = 0; s < states_; ++s) state_rows(r, s, at, count);
+      at += count;
+      next_facet_ += count;
+      end_complete_copies();
+    }
   }
 
-  const OrganTotals& totals() const { return totals_; }
+  const OrganTotals& totals() const { return organs_->totals; }
 
   void finish(const SolveReport& report, const Certificate* certificate) {
     const h5::Quiet quiet;
-    if (next_facet_ != facets_.size())
-      throw Error(fmt::format("{}: only {} of {} facets have values", file_.path(), next_facet_, facets_.size()));
-    for (auto* dataset : {&irradiance_, &absorbed_, &sunlit_, &variance_})
+    if (next_facet_ != rows_.placed().facets)
+      throw Error(fmt::format("{}: only {} of {} facets have values", file_.path(), next_facet_, rows_.placed().facets));
+    const auto datasets = {&irradiance_, &absorbed_, &sunlit_, &variance_, &area_, &organ_, &centroid_};
+    for (auto* dataset : datasets)
       if (!dataset->empty()) dataset->front().finish();
+    organs_->finish();
     queue_.flush();
-    for (auto* dataset : {&irradiance_, &absorbed_, &sunlit_, &variance_}) dataset->clear();
+    for (auto* dataset : datasets) dataset->clear();
+    organs_->close();
 
     h5::ArrayWriter arrays(file_, queue_);
-    h5::write_organ_values(arrays, organs_group_.get(), totals_, [&](const char* name) { return keeps(name); });
-    if (!report.organ_variance.absorbed.empty() && keeps("variance/organs")) {
-      if (!variance_group_) variance_group_ = h5::make_group(file_, file_.id(), "variance");
-      arrays.write_states(variance_group_.get(), "organs", report.organ_variance.absorbed.data(),
-                          {totals_.states, totals_.organs, totals_.bands}, "W^2");
-      arrays.flush();
-    }
-    h5::write_report(file_, arrays, report, certificate, totals_, profile_);
+    h5::write_report(file_, arrays, report, certificate, states_, bands_, profile_);
     facets_group_.close();
-    organs_group_.close();
     variance_group_.close();
     file_.commit();
   }
@@ -108,97 +123,140 @@ class ResultWriter::Impl {
  private:
   bool keeps(const std::string& name) const { return fields_.empty() || std::find(fields_.begin(), fields_.end(), name) != fields_.end(); }
 
-  void begin_facets(h5::ArrayWriter& arrays) {
-    const std::size_t n = facets_.size(), s = totals_.states, b = totals_.bands;
+  void begin_facets() {
     bool any = false;
     for (const char* name : {"facets/irradiance", "facets/absorbed", "facets/sunlit", "facets/area", "facets/centroid", "facets/organ"})
       any = any || keeps(name);
     if (!any) return;
     facets_group_ = h5::make_group(file_, file_.id(), "facets");
-    const hid_t group = facets_group_.get();
-    const auto begin = [&](std::vector<RowDataset>& dataset, const char* name, std::vector<std::size_t> inner, const char* unit) {
-      if (keeps(name))
-        dataset.emplace_back(file_, queue_, group, name + sizeof "facets/" - 1, H5T_NATIVE_FLOAT, RowDataset::Shape{s, n, std::move(inner)},
-                             unit);
+    const std::size_t n = rows_.placed().facets;
+    const auto begin = [&](std::vector<RowDataset>& dataset, const char* name, hid_t type, RowDataset::Shape shape, const char* unit) {
+      dataset.emplace_back(file_, queue_, facets_group_.get(), name + sizeof "facets/" - 1, type, shape, unit);
     };
-    begin(irradiance_, "facets/irradiance", {2, b}, "W m^-2");
-    begin(absorbed_, "facets/absorbed", {b}, "W m^-2");
-    begin(sunlit_, "facets/sunlit", {2}, "1");
-    arrays.write(group, "area", facets_.area, "m^2");
-    arrays.write(group, "organ", facets_.organ, "row of /organs");
-    if (keeps("facets/centroid")) {
-      RowDataset centroid(file_, queue_, group, "centroid", H5T_NATIVE_DOUBLE, {0, n, {3}}, "m");
-      for (const auto& c : facets_.corners) {
-        const Vec3 p = (c[0] + c[1] + c[2]) / 3.0;
-        const double row[3] = {p.x, p.y, p.z};
-        centroid.append(0, row, 1);
-      }
-      centroid.finish();
-      queue_.flush();
-    }
-    arrays.flush();
+    const auto states = [&](std::vector<std::size_t> inner) { return RowDataset::Shape{states_, n, std::move(inner)}; };
+    if (keeps("facets/irradiance")) begin(irradiance_, "facets/irradiance", H5T_NATIVE_FLOAT, states({2, bands_}), "W m^-2");
+    if (keeps("facets/absorbed")) begin(absorbed_, "facets/absorbed", H5T_NATIVE_FLOAT, states({bands_}), "W m^-2");
+    if (keeps("facets/sunlit")) begin(sunlit_, "facets/sunlit", H5T_NATIVE_FLOAT, states({2}), "1");
+    begin(area_, "facets/area", H5T_NATIVE_FLOAT, {0, n, {}}, "m^2");
+    wide_organs_ = rows_.placed().organs > std::uint64_t{1} << 32;
+    begin(organ_, "facets/organ", wide_organs_ ? H5T_NATIVE_UINT64 : H5T_NATIVE_UINT32, {0, n, {}}, "row of /organs");
+    if (keeps("facets/centroid")) begin(centroid_, "facets/centroid", H5T_NATIVE_DOUBLE, {0, n, {3}}, "m");
   }
 
-  void state_rows(const IrradianceRows& r, std::size_t s) {
-    const std::size_t bands = totals_.bands;
-    const float* irradiance = r.irradiance + s * r.count * 2 * bands;
-    const float* sunlit = r.sunlit ? r.sunlit + s * r.count * 2 : nullptr;
-    absorbed_rows_.resize(r.count * bands);
-    for (std::size_t i = 0; i < r.count; ++i) {
-      const std::size_t facet = r.first_facet + i, organ = facets_.organ[facet];
-      const double area = facets_.area[facet];
-      double* organ_irradiance = &totals_.irradiance[(s * totals_.organs + organ) * 2 * bands];
-      double* organ_absorbed = &totals_.absorbed[(s * totals_.organs + organ) * bands];
-      for (std::size_t b = 0; b < bands; ++b) {
-        const double front = irradiance[(i * 2) * bands + b], back = irradiance[(i * 2 + 1) * bands + b];
+  /// What the geometry says of facets [first, first + count) of the copy, and its columns of /facets.
+  void look_at(std::uint64_t first, std::uint64_t count) {
+    facets_.clear();
+    centroids_.clear();
+    const bool plant = !rows_.is_ground(copy_);
+    rows_.visit(copy_, first, first + count, [&](std::uint64_t, const Triangle& c, std::uint32_t material, std::uint32_t organ) {
+      const auto area = static_cast<float>(glm::length(area_vector(c)));
+      facets_.push_back({area, material, organ, plant ? static_cast<std::uint32_t>(profile_.layer(c)) : 0});
+      organs_->add_area(organ, area);
+      if (plant) profile_.add_area(facets_.back().layer, area);
+      if (!centroid_.empty()) {
+        const Vec3 p = (c[0] + c[1] + c[2]) / 3.0;
+        centroids_.insert(centroids_.end(), {p.x, p.y, p.z});
+      }
+    });
+    if (!facets_group_) return;
+    if (!centroid_.empty()) centroid_.front().append(0, centroids_.data(), count);
+    floats_.clear();
+    for (const auto& f : facets_) floats_.push_back(f.area);
+    area_.front().append(0, floats_.data(), count);
+    const std::uint64_t first_organ = rows_.first_organ(copy_);
+    if (wide_organs_) {
+      std::vector<std::uint64_t> organs;
+      for (const auto& f : facets_) organs.push_back(first_organ + f.organ);
+      organ_.front().append(0, organs.data(), count);
+    } else {
+      organ_rows_.clear();
+      for (const auto& f : facets_) organ_rows_.push_back(static_cast<std::uint32_t>(first_organ + f.organ));
+      organ_.front().append(0, organ_rows_.data(), count);
+    }
+  }
+
+  /// Rows [at, at + count) of one state, which are those that look_at() saw.
+  void state_rows(const IrradianceRows& r, std::size_t s, std::size_t at, std::size_t count) {
+    const float* irradiance = r.irradiance + (s * r.count + at) * 2 * bands_;
+    const float* sunlit = r.sunlit ? r.sunlit + (s * r.count + at) * 2 : nullptr;
+    const float* variance = r.variance_of_absorbed ? r.variance_of_absorbed + (s * r.count + at) * bands_ : nullptr;
+    const bool plant = !rows_.is_ground(copy_);
+    floats_.resize(count * bands_);
+    for (std::size_t i = 0; i < count; ++i) {
+      const Facet& facet = facets_[i];
+      const double area = facet.area;
+      for (std::size_t b = 0; b < bands_; ++b) {
+        const double front = irradiance[(i * 2) * bands_ + b], back = irradiance[(i * 2 + 1) * bands_ + b];
         if (!std::isfinite(front) || !std::isfinite(back))
-          throw Error(fmt::format("{}: the irradiance of facet {} is not finite", file_.path(), facet));
-        const double* absorptance = &absorptance_[(facets_.optics[facet] * bands + b) * 2];
+          throw Error(fmt::format("{}: the irradiance of facet {} is not finite", file_.path(), next_facet_ + i));
+        const double* absorptance = &absorptance_[(facet.material * bands_ + b) * 2];
         const auto absorbed = static_cast<float>(absorptance[0] * front + absorptance[1] * back);
-        absorbed_rows_[i * bands + b] = absorbed;
-        organ_irradiance[b] += area * front;
-        organ_irradiance[bands + b] += area * back;
-        organ_absorbed[b] += area * double{absorbed};
-        if (facet < facets_.plant_facets) profile_.add_absorbed(s, facet, b, area * double{absorbed});
+        floats_[i * bands_ + b] = absorbed;
+        organs_->add_irradiance(s, facet.organ, 0, b, area * front);
+        organs_->add_irradiance(s, facet.organ, 1, b, area * back);
+        organs_->add_absorbed(s, facet.organ, b, area * double{absorbed});
+        if (plant) profile_.add_absorbed(s, facet.layer, b, area * double{absorbed});
+        if (variance) organs_->add_variance(s, facet.organ, b, area * area * double{variance[i * bands_ + b]});
       }
       if (sunlit)
-        for (std::size_t side = 0; side < 2; ++side) totals_.sunlit[(s * totals_.organs + organ) * 2 + side] += area * sunlit[i * 2 + side];
+        for (std::size_t side = 0; side < 2; ++side) organs_->add_sunlit(s, facet.organ, side, area * sunlit[i * 2 + side]);
     }
-    if (!irradiance_.empty()) irradiance_.front().append(s, irradiance, r.count);
-    if (!absorbed_.empty()) absorbed_.front().append(s, absorbed_rows_.data(), r.count);
-    if (sunlit && !sunlit_.empty()) sunlit_.front().append(s, sunlit, r.count);
-    if (r.variance_of_absorbed && facets_group_ && keeps("variance/facets")) {
+    if (!irradiance_.empty()) irradiance_.front().append(s, irradiance, count);
+    if (!absorbed_.empty()) absorbed_.front().append(s, floats_.data(), count);
+    if (sunlit && !sunlit_.empty()) sunlit_.front().append(s, sunlit, count);
+    if (variance && facets_group_ && keeps("variance/facets")) {
       if (variance_.empty()) {
-        variance_group_ = h5::make_group(file_, file_.id(), "variance");
+        variance_group_ = h5::open_or_make_group(file_, file_.id(), "variance");
         variance_.emplace_back(file_, queue_, variance_group_.get(), "facets", H5T_NATIVE_FLOAT,
-                               RowDataset::Shape{totals_.states, facets_.size(), {bands}}, "W^2 m^-4");
+                               RowDataset::Shape{states_, rows_.placed().facets, {bands_}}, "W^2 m^-4");
       }
-      variance_.front().append(s, r.variance_of_absorbed + s * r.count * bands, r.count);
+      variance_.front().append(s, variance, count);
     }
   }
 
-  const Scene& scene_;
-  const FacetScene& facets_;
+  void end_complete_copies() {
+    while (copy_ <= rows_.placed().copies.size() && next_facet_ == rows_.first_facet(copy_) + rows_.facet_count(copy_)) {
+      organs_->end();
+      if (++copy_ <= rows_.placed().copies.size()) organs_->begin(copy_);
+    }
+  }
+
+  struct Facet {
+    float area;
+    std::uint32_t material, organ, layer;
+  };
+
+  FacetRows rows_;
   std::vector<std::string> fields_;
-  bool keep_facets_;
+  std::size_t states_, bands_;
   h5::OutputFile file_;
   h5::ChunkQueue queue_;
-  Id organs_group_, facets_group_, variance_group_;
-  std::vector<RowDataset> irradiance_, absorbed_, sunlit_, variance_;  ///< none or one each
-  OrganTotals totals_;
+  OrganNames names_;
+  Id facets_group_, variance_group_;
+  std::vector<RowDataset> irradiance_, absorbed_, sunlit_, variance_, area_, organ_, centroid_;  ///< none or one each
+  std::optional<h5::OrganRows> organs_;
   HeightProfile profile_;
   std::vector<double> absorptance_;  ///< [material][b][front, back]
-  std::vector<float> absorbed_rows_;
-  std::size_t next_facet_ = 0;
+  bool wide_organs_ = false;
+  std::uint64_t next_facet_ = 0;
+  std::uint32_t copy_ = 0;  ///< that next_facet_ belongs to
+  // Of the piece at hand:
+  std::vector<Facet> facets_;
+  std::vector<double> centroids_;
+  std::vector<float> floats_;
+  std::vector<std::uint32_t> organ_rows_;
 };
 
-ResultWriter::ResultWriter(const std::string& file, const Scene& scene, const FacetScene& facets, const OutputChoice& output,
+ResultWriter::ResultWriter(const std::string& file, const Scene& scene, const PlacedScene& placed, const OutputChoice& output,
                            const std::string& software_version, const std::string& method)
-    : impl_(std::make_unique<Impl>(file, scene, facets, output, software_version, method)) {}
+    : impl_(std::make_unique<Impl>(file, scene, placed, output, software_version, method)) {}
 ResultWriter::~ResultWriter() = default;
 
 void ResultWriter::rows(const IrradianceRows& rows) {
   impl_->rows(rows);
+}
+void ResultWriter::keep_totals(std::vector<std::uint64_t> organs) {
+  impl_->keep_totals(std::move(organs));
 }
 const OrganTotals& ResultWriter::totals() const {
   return impl_->totals();

@@ -166,6 +166,11 @@ Id make_group(OutputFile& file, hid_t parent, const char* name) {
   return group;
 }
 
+Id open_or_make_group(OutputFile& file, hid_t parent, const char* name) {
+  if (H5Lexists(parent, name, H5P_DEFAULT) <= 0) return make_group(file, parent, name);
+  return Id{H5Gopen2(parent, name, H5P_DEFAULT)};
+}
+
 void ArrayWriter::write_raw(hid_t group, const char* name, hid_t type, const void* data, const RowDataset::Shape& shape,
                             std::string_view unit) {
   auto& dataset = open_.emplace_back(file_, queue_, group, name, type, shape, unit);

@@ -72,6 +72,7 @@ void write_attribute(OutputFile& file, hid_t object, const char* name, const std
 void write_attribute(OutputFile& file, hid_t object, const char* name, std::uint64_t value);
 void write_attribute(OutputFile& file, hid_t object, const char* name, const std::vector<double>& values);
 Id make_group(OutputFile& file, hid_t parent, const char* name);
+Id open_or_make_group(OutputFile& file, hid_t parent, const char* name);
 /// UTF-8 string type for texts up to `length` bytes, or H5T_VARIABLE.
 Id string_type(std::size_t length);
 

@@ -30,6 +30,7 @@ using Figures = std::map<std::string, double>;
 Figures measure(const std::string& name, Quality quality) {
   const Scene scene = read_scene(data + name + ".toml");
   const FacetScene facets = expand(scene);
+  const PlacedScene placed = place(scene);
   const Result reference(data + name + "_reference.h5");
   Figures found;
   for (int seed = 1; seed <= seeds; ++seed) {
@@ -38,7 +39,7 @@ Figures measure(const std::string& name, Quality quality) {
     RadiositySettings settings;
     settings.seed = static_cast<std::uint64_t>(seed);
     settings.density = density_of(quality);
-    ResultWriter writer(path, scene, facets, scene.output, software_version(), "clustering");
+    ResultWriter writer(path, scene, placed, scene.output, software_version(), "clustering");
     const auto report = solve_radiosity(scene, facets, settings, writer, silent());
     writer.finish(report);
     REQUIRE(report.status == SolveStatus::converged);

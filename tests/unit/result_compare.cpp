@@ -24,20 +24,20 @@ Scene black_scene() {
 }
 
 struct Made {
-  std::vector<float> front;                     ///< [n] W m^-2
-  std::vector<float> variance, organ_variance;  ///< [n], [m], or empty
+  std::vector<float> front;     ///< [n] W m^-2
+  std::vector<float> variance;  ///< [n] or empty
   Balance balance{10, 6, 2, 2};
 };
 
 std::string write(const Folder& folder, const char* name, const Scene& scene, const Made& made) {
   const FacetScene facets = expand(scene);
+  const PlacedScene placed = place(scene);
   std::vector<float> irradiance;
   for (const float e : made.front) irradiance.insert(irradiance.end(), {e, 0.0f});
-  ResultWriter writer(folder / name, scene, facets, scene.output, "0.1.0", made.variance.empty() ? "flat" : "reference");
+  ResultWriter writer(folder / name, scene, placed, scene.output, "0.1.0", made.variance.empty() ? "flat" : "reference");
   writer.rows({0, facets.size(), irradiance.data(), nullptr, made.variance.empty() ? nullptr : made.variance.data()});
   SolveReport report = small_report();
   report.balance = {{made.balance}};
-  report.organ_variance.absorbed = made.organ_variance;
   writer.finish(report);
   return folder / name;
 }
@@ -49,7 +49,7 @@ TEST_CASE("compare finds the bias, rmse and maximum that were put in", "[result]
   const Scene scene = black_scene();
   const FacetScene facets = expand(scene);
   const std::size_t n = facets.size();
-  Made reference{std::vector<float>(n, 100.0f), {}, {}};
+  Made reference{std::vector<float>(n, 100.0f), {}};
 
   SECTION("a constant shift is a bias; ground cells do not count") {
     Made shifted = reference;
@@ -86,15 +86,26 @@ TEST_CASE("compare finds the bias, rmse and maximum that were put in", "[result]
     for (auto& e : wrong.front) e = 105.0f;
     Made noisy = reference;
     noisy.variance.assign(n, 16.0f);  // (4 W m^-2)^2
-    std::vector<double> area(facets.organs.size(), 0.0);
-    for (std::size_t f = 0; f < n; ++f) area[facets.organ[f]] += facets.area[f];
-    for (const double a : area) noisy.organ_variance.push_back(static_cast<float>(36.0 * a * a));  // (6 W m^-2)^2 in W^2
+    // Facets are independent: an organ's variance is the sum of area^2 x variance, here 16 W^2 m^-4 each.
+    std::vector<double> area(facets.organs.size(), 0.0), squares(facets.organs.size(), 0.0);
+    double sum = 0.0, noise = 0.0;
+    for (std::size_t f = 0; f < facets.plant_facets; ++f) {
+      area[facets.organ[f]] += facets.area[f];
+      squares[facets.organ[f]] += double{facets.area[f]} * facets.area[f];
+    }
+    for (std::size_t o = 0; o < area.size(); ++o)
+      if (area[o] > 0) sum += area[o], noise += 16.0 * squares[o] / area[o];
+    noise /= sum;
+    REQUIRE(noise < 16.0);
     const auto c = compare(Result(write(folder, "x.h5", scene, wrong)), Result(write(folder, "r.h5", scene, noisy)));
     CHECK(c.facets.overall[0].rmse == Approx(0.03).epsilon(1e-5));  // sqrt(25 - 16) = 3
     CHECK(c.facets.overall[0].noise == Approx(0.04).epsilon(1e-5));
-    CHECK(c.organs.overall[0].rmse == 0.0);  // 25 - 36 < 0
-    CHECK(c.organs.overall[0].noise == Approx(0.06).epsilon(1e-5));
+    CHECK(c.organs.overall[0].rmse == Approx(0.01 * std::sqrt(25.0 - noise)).epsilon(1e-5));
+    CHECK(c.organs.overall[0].noise == Approx(0.01 * std::sqrt(noise)).epsilon(1e-5));
     CHECK(c.organs.overall[0].bias == Approx(0.05).epsilon(1e-5));
+    Made noisier = noisy;
+    noisier.variance.assign(n, 100.0f);
+    CHECK(compare(Result(folder / "x.h5"), Result(write(folder, "n.h5", scene, noisier))).organs.overall[0].rmse == 0.0);
     // The noise of both files, where both are references.
     const auto both = compare(Result(folder / "r.h5"), Result(folder / "r.h5"));
     CHECK(both.facets.overall[0].noise == Approx(0.04 * std::sqrt(2.0)).epsilon(1e-5));
@@ -119,11 +130,12 @@ TEST_CASE("compare counts each state and all together", "[result][compare]") {
   scene.states.push_back(scene.states[0]);
   scene.states[1].name = "evening";
   const FacetScene facets = expand(scene);
+  const PlacedScene placed = place(scene);
   const std::size_t n = facets.size();
   const auto write_states = [&](const char* name, float noon, float evening) {
     std::vector<float> irradiance(2 * n * 2, 0.0f);
     for (std::size_t f = 0; f < n; ++f) irradiance[2 * f] = noon, irradiance[2 * n + 2 * f] = evening;
-    ResultWriter writer(folder / name, scene, facets, scene.output, "0.1.0", "flat");
+    ResultWriter writer(folder / name, scene, placed, scene.output, "0.1.0", "flat");
     writer.rows({0, n, irradiance.data(), nullptr, nullptr});
     SolveReport report = small_report();
     report.balance = {{Balance{10, 5, 0, 5}}, {Balance{2, 1, 0, 1}}};
@@ -140,9 +152,9 @@ TEST_CASE("compare counts each state and all together", "[result][compare]") {
 TEST_CASE("compare refuses results of different scenes and says what differs", "[result][compare]") {
   const Folder folder;
   const Scene scene = black_scene();
-  const std::string r = write(folder, "r.h5", scene, {std::vector<float>(expand(scene).size(), 1.0f), {}, {}});
+  const std::string r = write(folder, "r.h5", scene, {std::vector<float>(expand(scene).size(), 1.0f), {}});
   const auto against = [&](const Scene& other) {
-    const std::string x = write(folder, "x.h5", other, {std::vector<float>(expand(other).size(), 1.0f), {}, {}});
+    const std::string x = write(folder, "x.h5", other, {std::vector<float>(expand(other).size(), 1.0f), {}});
     compare(Result(x), Result(r));
   };
   const std::string x = folder / "x.h5", why = " as in " + r + "; only results of the same scene can be compared";

@@ -17,9 +17,10 @@ TEST_CASE("An ordinary reader, h5py, opens results as docs/formats-result.md say
   const Folder folder;
   const Scene scene = small_scene(3000);  // several chunks
   const FacetScene facets = expand(scene);
+  const PlacedScene placed = place(scene);
   const Values values(facets);
   {
-    ResultWriter writer(folder / "r.h5", scene, facets, scene.output, "0.1.0", "reference");
+    ResultWriter writer(folder / "r.h5", scene, placed, scene.output, "0.1.0", "reference");
     values.send(writer, 1000, true);
     writer.finish(small_report());
   }

@@ -38,10 +38,11 @@ TEST_CASE("A result file gives back what was written", "[result]") {
   if (leaves > 3 && piece == 7) return;
   const Scene scene = small_scene(leaves);
   const FacetScene facets = expand(scene);
+  const PlacedScene placed = place(scene);
   const Values values(facets);
   const std::string file = folder / "r.h5";
   {
-    ResultWriter writer(file, scene, facets, scene.output, "0.1.0", "flat");
+    ResultWriter writer(file, scene, placed, scene.output, "0.1.0", "flat");
     values.send(writer, piece);
     Certificate c;
     c.organs = {1, 3};
@@ -136,7 +137,7 @@ TEST_CASE("A result file gives back what was written", "[result]") {
   CHECK(result.memory()[0].second == 4096);
   const auto certificate = result.certificate();
   REQUIRE(certificate);
-  CHECK(certificate->organs == std::vector<std::uint32_t>{1, 3});
+  CHECK(certificate->organs == std::vector<std::uint64_t>{1, 3});
   CHECK(certificate->reference[0] == 1.5f);
   CHECK(certificate->bias == std::vector<double>{-0.001, 0.002});
   CHECK(certificate->rays == 12345);
@@ -146,10 +147,11 @@ TEST_CASE("The same rows give the same bytes", "[result]") {
   const Folder folder;
   const Scene scene = small_scene(2000);
   const FacetScene facets = expand(scene);
+  const PlacedScene placed = place(scene);
   const Values values(facets);
   SolveReport report = small_report();
   for (const char* name : {"a.h5", "b.h5"}) {
-    ResultWriter writer(folder / name, scene, facets, scene.output, "0.1.0", "flat");
+    ResultWriter writer(folder / name, scene, placed, scene.output, "0.1.0", "flat");
     values.send(writer, name[0] == 'a' ? 100 : 1777);
     writer.finish(report);
   }
@@ -162,19 +164,26 @@ TEST_CASE("[output] decides what a result keeps", "[result]") {
   const Folder folder;
   const Scene scene = small_scene();
   const FacetScene facets = expand(scene);
+  const PlacedScene placed = place(scene);
   const Values values(facets);
   const auto write = [&](const OutputChoice& output) {
-    ResultWriter writer(folder / "r.h5", scene, facets, output, "0.1.0", "reference");
+    ResultWriter writer(folder / "r.h5", scene, placed, output, "0.1.0", "reference");
     values.send(writer, 1000, true);
     auto report = small_report();
-    report.organ_variance.absorbed.assign(2 * facets.organs.size() * 2, 0.5f);
     writer.finish(report);
     return Result(folder / "r.h5");
   };
   SECTION("everything") {
     const auto r = write({});
     CHECK(r.all<float>("variance/facets") == values.variance);
-    CHECK(r.all<float>("variance/organs").size() == 2 * facets.organs.size() * 2);
+    // Facets are independent: sums of area^2 x variance.
+    std::vector<double> sums(2 * facets.organs.size() * 2, 0.0);
+    for (std::size_t s = 0; s < 2; ++s)
+      for (std::size_t f = 0; f < facets.size(); ++f)
+        for (std::size_t b = 0; b < 2; ++b)
+          sums[(s * facets.organs.size() + facets.organ[f]) * 2 + b] +=
+              double{facets.area[f]} * facets.area[f] * values.variance[(s * facets.size() + f) * 2 + b];
+    CHECK(r.all<float>("variance/organs") == std::vector<float>(sums.begin(), sums.end()));
     CHECK_FALSE(r.has("certificate"));
   }
   SECTION("organs only") {
@@ -205,8 +214,9 @@ TEST_CASE("A scene without sun stores no sunlit fractions, and they read as zero
   const Folder folder;
   Scene scene = small_scene(3000);
   const FacetScene facets = expand(scene);
+  const PlacedScene placed = place(scene);
   const Values values(facets);
-  ResultWriter writer(folder / "r.h5", scene, facets, scene.output, "0.1.0", "flat");
+  ResultWriter writer(folder / "r.h5", scene, placed, scene.output, "0.1.0", "flat");
   writer.rows({0, facets.size(), values.irradiance.data(), nullptr, nullptr});
   writer.finish(small_report());
   const Result result(folder / "r.h5");

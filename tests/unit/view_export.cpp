@@ -74,7 +74,8 @@ struct Stored {
   Stored() {
     scene.plants[0].name = "shrub, \"big\"";
     facets = expand(scene);
-    ResultWriter writer(folder / "r.h5", scene, facets, scene.output, "0.1.0", "flat");
+    const PlacedScene placed = place(scene);
+    ResultWriter writer(folder / "r.h5", scene, placed, scene.output, "0.1.0", "flat");
     Values(facets).send(writer, 1000);
     writer.finish(small_report());
   }
@@ -182,8 +183,9 @@ TEST_CASE("A result without facets makes a table and no mesh", "[view][export]")
   const Folder folder;
   const Scene scene = small_scene();
   const FacetScene facets = expand(scene);
+  const PlacedScene placed = place(scene);
   {
-    ResultWriter writer(folder / "r.h5", scene, facets, {false, {}}, "0.1.0", "flat");
+    ResultWriter writer(folder / "r.h5", scene, placed, {false, {}}, "0.1.0", "flat");
     Values(facets).send(writer, 1000);
     writer.finish(small_report());
   }

@@ -13,7 +13,8 @@ namespace {
 /// A result of small_scene() as a solver would leave it.
 std::string stored(const Folder& folder, const Scene& scene, const FacetScene& facets, const char* name = "r.h5") {
   const Values values(facets);
-  ResultWriter writer(folder / name, scene, facets, scene.output, "0.1.0", "flat");
+  const PlacedScene placed = place(scene);
+  ResultWriter writer(folder / name, scene, placed, scene.output, "0.1.0", "flat");
   values.send(writer, 1000);
   writer.finish(small_report());
   return folder / name;

@@ -6,7 +6,8 @@
 
 #include <sunfleck/core/progress.hpp>
 #include <sunfleck/result/certificate.hpp>
-#include <sunfleck/result/result_writer.hpp>
+#include <sunfleck/result/organ_totals.hpp>
+#include <sunfleck/scene/facet_rows.hpp>
 #include <sunfleck/scene/facets.hpp>
 #include <sunfleck/scene/scene.hpp>
 #include <sunfleck/scene/solution.hpp>
@@ -20,12 +21,26 @@ struct CertificateSettings {
   std::uint64_t rays = 0;      ///< to spend, about; 0 = 2 million up to 10^5 facets, then less with their root, 600,000 from 1.1 10^6 on
 };
 
-/// Checks organs of plants, drawn with a probability proportional to their area plus three times the mean area (systematic sampling in
-/// scene order; organs larger than the sampling step are taken for sure) and weighted by area over probability, by paths from points
-/// uniform over each organ's area. Estimates, per band, over all states together (x solved, r reference, per area; w area; the Error
-/// definition of docs/formats-result.md):
+/// An organ to check.
+struct ChosenOrgan {
+  std::uint64_t organ = 0;  ///< row of /organs
+  double share = 0;         ///< of the area of all organs of plants, that it stands for
+  double size = 0;          ///< the probability to be drawn was proportional to it
+  bool certain = false;     ///< taken for sure
+};
+
+/// Draws organs of plants with a probability proportional to their area plus three times the mean area: small organs weigh little but
+/// have the largest errors (on a coffee plant organs that make a tenth of the area hold nine tenths of the square error in NIR), and one
+/// drawn by its area alone would weigh as much as a large one. Systematic sampling in scene order, so that they spread over the scene;
+/// organs larger than the sampling step are taken for sure; all, if there are no more than settings.organs. Shares of those drawn are area
+/// over probability, scaled to the area that they stand for together. Rising rows; holds nothing of the size of the scene.
+std::vector<ChosenOrgan> choose_organs(const FacetRows& rows, const CertificateSettings& settings);
+
+/// Checks the chosen organs (choose_organs), whose solved light `solved` holds in the same order, by paths from points uniform over each
+/// organ's area. Estimates, per band, over all states together (x solved, r reference, per area; w area; the Error definition of
+/// docs/formats-result.md):
 ///   rmse^2 = max(0, sum w ((x - r)^2 - var r) / sum w), bias = sum w (x - r) / sum w, over the mean of r,
-/// where the mean of r is the mean of x over *all* organs less the bias, which is far less noisy than that of the checked ones.
+/// where the mean of r is the mean of x over *all* organs of plants less the bias, which is far less noisy than that of the checked ones.
 /// The interval and the bias's standard error hold both the choice of organs and the noise of the paths (see error_interval.hpp).
 /// Where plants absorb less than 1e-6 of the incident light, irradiance (front + back) takes the place of absorbed in the measures.
 ///
@@ -33,7 +48,8 @@ struct CertificateSettings {
 /// facets alone, some per cent more to find out what a path costs, and the tree of rays (1.3 microseconds a facet): below 2 s on one core
 /// up to 10^5 facets, and some 4 s with 10^6, where solving takes far longer. Fewer organs are checked (at least 64) where 16 samples of
 /// each would cost more. Same bits for any number of threads. A scene without plant organs yields measures of zero and no organs.
-Certificate certify(const Scene& scene, const FacetScene& facets, const OrganTotals& solved,
-                    const std::vector<std::vector<Balance>>& balance, const CertificateSettings& settings, Progress& progress);
+Certificate certify(const Scene& scene, const FacetRows& rows, const FacetScene& facets, const std::vector<ChosenOrgan>& chosen,
+                    const OrganTotals& solved, const std::vector<std::vector<Balance>>& balance, const CertificateSettings& settings,
+                    Progress& progress);
 
 }  // namespace sunfleck

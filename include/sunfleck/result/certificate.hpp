@@ -9,7 +9,7 @@ namespace sunfleck {
 /// s states, k checked organs, b bands. Error measures are fractions of the mean absorbed power per area of the checked organs' plants,
 /// after the Error definition of docs/formats-result.md; over all states together (weighted as they are listed).
 struct Certificate {
-  std::vector<std::uint32_t> organs;        ///< [k] rows of /organs, rising
+  std::vector<std::uint64_t> organs;        ///< [k] rows of /organs, rising
   std::vector<float> solved;                ///< [s][k][b] absorbed power [W]
   std::vector<float> reference;             ///< [s][k][b] absorbed power by path tracing [W]
   std::vector<float> standard_error;        ///< [s][k][b] of `reference` [W]

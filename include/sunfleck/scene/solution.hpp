@@ -16,13 +16,9 @@ struct IrradianceRows {
   std::size_t count = 0;
   const float* irradiance = nullptr;  ///< [s][count][2][b] front, back [W m^-2], all light: direct and scattered
   const float* sunlit = nullptr;      ///< [s][count][2] fraction of the side that the sun reaches [-]; null without sun in any state
-  const float* variance_of_absorbed = nullptr;  ///< [s][count][b] of the mean of absorbed [(W m^-2)^2]; reference method only
-};
-
-/// Per organ, for the reference method, whose facets within an organ are correlated: variance of the mean of the organ's
-/// absorbed power [W^2].
-struct OrganVariance {
-  std::vector<float> absorbed;  ///< [s][m][b]; empty for other methods
+  /// [s][count][b] of the mean of absorbed [(W m^-2)^2]; reference method only. Facets are sampled independently of each other: the
+  /// variance of an organ's absorbed power is the sum over its facets of area^2 x variance.
+  const float* variance_of_absorbed = nullptr;
 };
 
 /// Receives finished rows; called from one thread at a time, rows in rising order without gaps.
@@ -64,7 +60,6 @@ struct SolveReport {
   std::vector<std::pair<std::string, std::uint64_t>> counts;  ///< deterministic work: "links", "fragments", "directions", "rays"
   std::vector<std::pair<std::string, std::uint64_t>> memory;  ///< bytes held per phase, counted by the program
   Timings timings;
-  OrganVariance organ_variance;
 };
 
 /// Settings shared by all methods.
