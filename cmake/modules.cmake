@@ -37,3 +37,13 @@ function(sunfleck_module name)
   target_link_libraries(sunfleck_${name} PUBLIC ${M_LINK} PRIVATE ${M_PRIVATE})
   sunfleck_options(sunfleck_${name})
 endfunction()
+
+# sunfleck_embed(NAME FOLDER): the files of a folder become part of the module, in a C++ file that is made anew when one of them changes.
+function(sunfleck_embed name folder)
+  file(GLOB files CONFIGURE_DEPENDS ${folder}/*)
+  set(output ${PROJECT_BINARY_DIR}/embedded/${name}_files.cpp)
+  add_custom_command(OUTPUT ${output}
+                     COMMAND ${CMAKE_COMMAND} -DSOURCE=${folder} -DOUTPUT=${output} -P ${PROJECT_SOURCE_DIR}/cmake/embed_web_files.cmake
+                     DEPENDS ${files} ${PROJECT_SOURCE_DIR}/cmake/embed_web_files.cmake VERBATIM)
+  target_sources(sunfleck_${name} PRIVATE ${output})
+endfunction()

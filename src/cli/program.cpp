@@ -69,6 +69,7 @@ struct Verbs {
   CompareOptions compare;
   ExportOptions exporting;
   RenderOptions render;
+  ViewOptions view;
   GenerateOptions generate;
   InfoOptions info;
   OriginalsOptions originals;
@@ -207,6 +208,21 @@ void add_render(CLI::App& verb, RenderOptions& o) {
       "  sunfleck render stand.h5 -o top.png --elevation 90 --azimuth 180 --orthographic");
 }
 
+void add_view(CLI::App& verb, ViewOptions& o) {
+  verb.add_option("RESULT", o.results, "result of solve, .h5; a second one to compare with it")->required()->expected(1, 2)->type_name("");
+  verb.add_option("--port", o.port, "port to serve on (default any that is free)")->type_name("N")->check(count_from(1, 65535));
+  verb.add_option("--listen", o.listen, "address to serve on instead of this machine's loopback; needs --token")->type_name("ADDRESS");
+  verb.add_option("--token", o.token, "what a browser must know to be answered: 16 letters and digits or more, or 'new' for a random one")
+      ->type_name("TOKEN")
+      ->envname("SUNFLECK_TOKEN");
+  verb.footer(
+      "Prints the address to open in a browser, and serves until it is stopped (Ctrl-C).\n"
+      "Examples:\n"
+      "  sunfleck view stand.h5\n"
+      "  sunfleck view standard.h5 reference.h5\n"
+      "  sunfleck view stand.h5 --port 8600        # on a remote machine; here: ssh -L 8600:localhost:8600 THAT_MACHINE");
+}
+
 void add_info(CLI::App& verb, InfoOptions& o) {
   verb.add_option("FILE", o.file, "a result, a plant (.opf .obj .ply .can .h5), a species or a scene (.toml)")->required()->type_name("");
   verb.add_flag("--json", o.json, "print JSON instead of text");
@@ -267,6 +283,7 @@ class Program {
     add("compare", "the error of one result against another", add_compare, verbs_.compare, verb_compare);
     add("export", "a result as a lit mesh or a table", add_export, verbs_.exporting, verb_export);
     add("render", "a picture of a result", add_render, verbs_.render, verb_render);
+    add("view", "an interactive viewer of a result, in the browser", add_view, verbs_.view, verb_view);
     add("info", "what a result, plant, species or scene file holds", add_info, verbs_.info, verb_info);
     add("originals", "which structures share an original, and its tables", add_originals, verbs_.originals, verb_originals);
     add("generate", "a procedural plant from a species file", add_generate, verbs_.generate, verb_generate);

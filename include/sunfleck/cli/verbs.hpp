@@ -54,6 +54,13 @@ struct RenderOptions {
 };
 int verb_render(const RenderOptions& options, Progress& progress);
 
+struct ViewOptions {
+  std::vector<std::string> results;          ///< one, or two to compare
+  std::optional<std::string> listen, token;  ///< address other than the loopback; what requests must bring
+  int port = 0;                              ///< 0 = any that is free
+};
+int verb_view(const ViewOptions& options, Progress& progress);
+
 struct GenerateOptions {
   std::string species, output;
   std::optional<double> age;

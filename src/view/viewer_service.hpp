@@ -1,0 +1,59 @@
+// What the viewer answers to a request, whatever carries it.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <list>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "view/viewer_frame.hpp"
+
+namespace sunfleck {
+
+struct Answer {
+  int status = 200;
+  std::string type = "application/json";
+  std::string body;
+  std::vector<std::pair<std::string, std::string>> headers = {};
+};
+
+/// Answers for one or two open results. All members may be called from any number of threads.
+class ViewerService {
+ public:
+  explicit ViewerService(std::vector<std::string> files) : files_(std::move(files)) {}
+
+  /// Reads the files; until then answers are 503. Throws what Result throws.
+  void load();
+  /// Reads files that were replaced; those that cannot be read stay as they were. True if all are as on disk now.
+  bool reload(std::string& problem);
+
+  /// `path` without its query; `post` is true for POST. Never throws: what is wrong with a request becomes 400, 404 or 405 with {"error"}.
+  Answer answer(bool post, const std::string& path, const Parameters& parameters);
+
+ private:
+  ViewerScenes scenes() const;
+  Answer status() const;
+  Answer frame(const ViewerScenes& scenes, const Parameters& parameters);
+  Answer table(const std::string& path, const ViewerScenes& scenes, const Parameters& parameters) const;
+  /// False once a later request of the same client has come: its picture is not wanted any more.
+  std::function<bool()> turn_over(const Parameters& parameters);
+
+  std::vector<std::string> files_;
+  mutable std::mutex mutex_;  ///< guards what follows
+  ViewerScenes scenes_;
+  std::uint64_t generation_ = 0;  ///< of what is loaded
+  struct Client {
+    std::string name;
+    std::shared_ptr<std::atomic<std::uint64_t>> turn;
+  };
+  std::list<Client> clients_;
+
+  std::mutex reloading_;
+  FrameStore frames_;
+};
+
+}  // namespace sunfleck

@@ -1,0 +1,285 @@
+// Puts the page together: what is shown, how it is looked at, what is selected.
+import { ask, askReload, saveFile } from "./api.js";
+import { OrbitCamera } from "./camera.js";
+import { Pane } from "./pane.js";
+import { listen } from "./pointing.js";
+import { short } from "./charts.js";
+import { Legend } from "./legend.js";
+import { OrganPanel } from "./organ.js";
+import { SelectionPanel } from "./selection.js";
+import { Statistics } from "./statistics.js";
+
+const element = (id) => document.getElementById(id);
+const labels = {
+  colour: "natural colour", absorbed: "absorbed", irradiance: "irradiance, side seen", irradiance_front: "irradiance, front", irradiance_back: "irradiance, back",
+  sunlit: "sunlit fraction, side seen", sunlit_front: "sunlit fraction, front", sunlit_back: "sunlit fraction, back", organ_absorbed: "absorbed, mean of the organ",
+  organ_irradiance: "irradiance, mean of the organ", organ_sunlit: "sunlit fraction, mean of the organ", area: "facet area", height: "height", type: "organ type",
+};
+
+let about;          // what the server tells of the results
+let camera;
+let generation = 0;
+const cut = { axis: "", part: 1, flip: false, normal: [0, 0, 1] };
+const cross = { x: 0.5, y: 0.5 };
+
+const mode = () => element("compare").value;
+const mainResult = () => (mode() === "second" ? 1 : 0);
+const isColour = () => element("quantity").value === "colour";
+const isDark = () => {
+  const theme = document.documentElement.dataset.theme;
+  return theme ? theme === "dark" : matchMedia("(prefers-color-scheme: dark)").matches;
+};
+
+function fill(select, entries, keep) {
+  const before = keep ? select.value : "";
+  select.replaceChildren(...entries.map(([value, text]) => new Option(text, value)));
+  if (entries.some(([value]) => String(value) === before)) select.value = before;
+}
+
+/// Normal and ends of the cut plane's way: it moves through the scene's box.
+function cutPlane() {
+  const { low, high } = about.results[0];
+  const axis = { x: [1, 0, 0], y: [0, 1, 0], z: [0, 0, 1] }[cut.axis] ?? cut.normal;
+  const corners = [0, 1, 2, 3, 4, 5, 6, 7].map((k) => axis.reduce((sum, a, i) => sum + a * (k & (1 << i) ? high[i] : low[i]), 0));
+  const from = Math.min(...corners), to = Math.max(...corners), margin = 1e-3 * (to - from);
+  const offset = from - margin + cut.part * (to - from + 2 * margin);
+  return { axis, offset, sign: cut.flip ? -1 : 1 };
+}
+
+function shownQuantity() {
+  return { quantity: element("quantity").value, band: element("band").value, state: element("state").value };
+}
+
+/// Parameters of a pane's picture.
+function viewOf(pane) {
+  const low = element("low").valueAsNumber, high = element("high").valueAsNumber;
+  const plane = cut.axis ? cutPlane() : null;
+  return {
+    ...shownQuantity(),
+    result: mode() === "both" ? pane : mainResult(),
+    difference: mode() === "difference" && !isColour(),
+    map: element("map").value,
+    log: element("log").checked && mode() !== "difference",
+    range: low < high && !isColour() ? `${low},${high}` : shared.range && !isColour() ? shared.range : undefined,
+    exposure: element("exposure").value,
+    ...camera.parameters(),
+    cut: plane ? [...plane.axis.map((v) => v * plane.sign), plane.offset * plane.sign].join(",") : undefined,
+    select: selection.text(), only: element("only").checked,
+    ground: element("ground").checked, map_ground: element("map-ground").checked, infinite: element("infinite").checked,
+    dark: isDark(), highlight: organ.row ?? undefined,
+  };
+}
+
+/// Side by side, both pictures have one scale: that of the first.
+const shared = { range: undefined };
+
+function report(frame, quick, problem) {
+  const text = element("progress");
+  if (problem) {
+    text.textContent = problem;
+    return;
+  }
+  const kind = frame.draft && !quick ? ", light being prepared" : "";
+  text.textContent = quick ? "" : frame.done ? `${frame.samples.toFixed(0)} rays a pixel` : `${frame.samples < 1 ? "refining" : `${Math.floor(frame.samples)} rays a pixel`}${kind}`;
+}
+
+const panes = [0, 1].map((k) => new Pane(element(`pane-${k}`), `pane${k}`, () => viewOf(k), report));
+const legend = new Legend(element("legend"));
+const organ = new OrganPanel({ state: () => element("state").value, result: mainResult, picked: () => redraw(), went: (low, high) => { camera.goTo(low, high); redraw(); } });
+const statistics = new Statistics({
+  parameters: () => ({ ...shownQuantity(), result: mainResult(), difference: mode() === "difference" && !isColour(), select: selection.text() }),
+});
+const selection = new SelectionPanel({ result: mainResult, changed: () => { redraw(); statistics.change(); } });
+
+let waiting = false;
+/// The camera or anything else in the pictures has changed; many calls within a frame of the screen become one.
+function redraw() {
+  if (waiting || !about) return;
+  waiting = true;
+  requestAnimationFrame(() => {
+    waiting = false;
+    for (const pane of panes) if (pane.visible) pane.change();
+  });
+}
+
+async function showScale() {
+  shared.range = undefined;
+  try {
+    const view = { ...viewOf(0), width: 64, height: 64 };
+    const answer = await ask("legend", view);
+    legend.show(answer, element("map").value);
+    if (mode() === "both" && answer.kind === "numbers") shared.range = `${answer.low},${answer.high}`;
+    element("low").placeholder = answer.kind === "numbers" ? short(answer.low) : "automatic";
+    element("high").placeholder = answer.kind === "numbers" ? short(answer.high) : "automatic";
+    element("low").setCustomValidity(""), element("high").setCustomValidity("");
+    say("");
+  } catch (error) {
+    say(error.message);
+  }
+  redraw();
+}
+
+function say(text) {
+  element("status").textContent = text;
+}
+
+function changeQuantity() {
+  const numbers = !isColour();
+  for (const id of ["map", "low", "high", "log", "auto", "map-ground"]) element(id).disabled = !numbers;
+  element("exposure").disabled = numbers;
+  element("log").disabled = !numbers || mode() === "difference";
+  showScale();
+  statistics.change();
+}
+
+function changeCompare() {
+  const both = mode() === "both";
+  element("pane-1").hidden = !both;
+  for (const k of [0, 1]) element(`pane-${k}`).querySelector("figcaption").textContent = both ? about.results[k].file : "";
+  if (mode() === "difference" && isColour()) element("quantity").value = about.results[0].quantities.find((q) => q !== "colour");
+  fill(element("quantity"), about.results[mainResult()].quantities.map((q) => [q, labels[q] ?? q.replaceAll("_", " ")]), true);
+  selection.load();
+  changeQuantity();
+}
+
+function showCut() {
+  const slider = element("cut-at");
+  slider.disabled = !cut.axis;
+  slider.value = cut.part;
+  const plane = cut.axis ? cutPlane() : null;
+  const text = plane ? `${short(plane.offset)} m` : "";
+  element("cut-value").textContent = text;
+  slider.setAttribute("aria-valuetext", text || "no cut plane");
+  redraw();
+}
+
+function moveCut(by) {
+  if (!cut.axis) {
+    cut.axis = element("cut-axis").value = "z";
+    cut.part = 1;
+  }
+  cut.part = Math.min(1, Math.max(0, cut.part + by));
+  showCut();
+}
+
+function placeCross() {
+  for (const pane of panes) {
+    const mark = pane.figure.querySelector(".cross");
+    mark.style.left = `${cross.x * 100}%`, mark.style.top = `${cross.y * 100}%`;
+  }
+}
+
+async function pick(k, x, y) {
+  const box = panes[k].canvas.getBoundingClientRect();
+  try {
+    organ.show(await ask("pick", { ...viewOf(k), x, y, width: Math.max(16, Math.round(box.width)), height: Math.max(16, Math.round(box.height)) }), legend.title);
+  } catch (error) {
+    say(error.message);
+  }
+}
+
+panes.forEach((pane, k) => listen(pane.canvas, {
+  turn: (around, up) => { camera.turn(around, up); redraw(); },
+  move: (right, up) => { camera.move(right, up); redraw(); },
+  zoom: (factor, right, up) => { camera.zoom(factor, right, up); redraw(); },
+  home: () => { camera.reset(); redraw(); },
+  cut: moveCut,
+  cross: (dx, dy) => { cross.x = Math.min(1, Math.max(0, cross.x + dx)), cross.y = Math.min(1, Math.max(0, cross.y + dy)); placeCross(); },
+  pick: (x, y) => pick(k, x, y),
+  pickAtCross: () => pick(k, cross.x, cross.y),
+  forget: () => organ.forget(),
+  step: (by) => organ.step(by, about.results[mainResult()].organs),
+  goTo: () => organ.goTo(),
+}));
+
+function wire() {
+  for (const id of ["quantity", "band", "state", "map", "log"]) element(id).addEventListener("change", changeQuantity);
+  element("state").addEventListener("change", () => organ.refresh());
+  for (const id of ["low", "high"]) element(id).addEventListener("change", showScale);
+  element("auto").addEventListener("click", () => { element("low").value = element("high").value = ""; showScale(); });
+  element("exposure").addEventListener("input", redraw);
+  element("compare").addEventListener("change", changeCompare);
+  for (const id of ["ground", "map-ground", "infinite", "only"]) element(id).addEventListener("change", redraw);
+  element("orthographic").addEventListener("change", (event) => { camera.orthographic = event.target.checked; redraw(); });
+  for (const button of document.querySelectorAll("[data-view]")) button.addEventListener("click", () => { camera.look(button.dataset.view); redraw(); });
+  element("cut-axis").addEventListener("change", (event) => {
+    cut.axis = event.target.value;
+    if (cut.axis === "camera") cut.normal = camera.axes().out;
+    if (cut.part > 0.98 || cut.part < 0.02) cut.part = 0.5;
+    showCut();
+  });
+  element("cut-at").addEventListener("input", (event) => { cut.part = event.target.valueAsNumber; showCut(); });
+  element("cut-flip").addEventListener("change", (event) => { cut.flip = event.target.checked; showCut(); });
+  element("save").addEventListener("click", async () => {
+    for (const k of mode() === "both" ? [0, 1] : [0]) await saveFile(mode() === "both" ? `sunfleck-${k + 1}.png` : "sunfleck.png", "frame", await panes[k].picture());
+  });
+  const theme = element("theme");
+  theme.value = localStorage.getItem("sunfleck-theme") ?? "";
+  const setTheme = () => {
+    if (theme.value) document.documentElement.dataset.theme = theme.value; else delete document.documentElement.dataset.theme;
+    localStorage.setItem("sunfleck-theme", theme.value);
+    redraw();
+    statistics.draw();
+  };
+  theme.addEventListener("change", setTheme);
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", setTheme);
+  setTheme();
+  element("reload").addEventListener("click", async () => {
+    element("reload").disabled = true;
+    try {
+      await askReload();
+      await load();
+      element("notice").hidden = true;
+    } catch (error) {
+      element("notice-text").textContent = `The file cannot be read: ${error.message}`;
+    }
+    element("reload").disabled = false;
+  });
+}
+
+/// Reads what the results are; a camera that is already there stays.
+async function load() {
+  about = await ask("describe");
+  const first = about.results[0], two = about.results.length === 2;
+  document.title = `${about.results.map((r) => r.file.split("/").at(-1)).join(" and ")} – Sunfleck`;
+  element("files").textContent = about.results.map((r) => `${r.file} (${r.facets.toLocaleString("en")} facets, ${r.method}${r.status === "converged" ? "" : ", not converged"})`).join("  |  ");
+  for (const node of document.querySelectorAll(".compare")) node.hidden = !two;
+  element("compare").querySelector("[value=difference]").disabled = !about.difference;
+  fill(element("band"), first.bands.map((name, i) => [i, `${name} [${first.units[i]}]`]), true);
+  fill(element("state"), first.states.map((name, i) => [i, name || `state ${i + 1}`]), true);
+  for (const node of document.querySelectorAll(".states")) node.hidden = first.states.length < 2;
+  for (const node of document.querySelectorAll(".grounds")) node.hidden = !first.ground;
+  for (const node of document.querySelectorAll(".periodic")) node.hidden = !first.periodic;
+  fill(element("map"), about.maps.map((name) => [name, name]), true);
+  if (!camera) camera = new OrbitCamera(first.camera);
+  organ.refresh();
+  changeCompare();
+  showCut();
+  placeCross();
+  document.body.dataset.ready = "1";
+}
+
+async function watch() {
+  try {
+    const now = await ask("status");
+    if (now.ready && !about) {
+      generation = now.generation;
+      say("");
+      await load();
+    } else if (about && now.generation !== generation) {  // read again from another window
+      generation = now.generation;
+      await load();
+    }
+    const changed = now.changed.map((c) => c.file + (c.missing ? " is gone" : " was replaced"));
+    element("notice").hidden = changed.length === 0;
+    if (changed.length && !element("notice-text").textContent.startsWith("The file cannot")) element("notice-text").textContent = `${changed.join("; ")}. What you see is what was read before.`;
+    element("reload").hidden = now.changed.some((c) => c.missing);
+    if (element("status").textContent === "The viewer does not answer") say("");
+  } catch (error) {
+    say(error.status ? error.message : "The viewer does not answer");
+  }
+  setTimeout(watch, about ? 2000 : 60);
+}
+
+wire();
+watch();
