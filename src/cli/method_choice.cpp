@@ -12,7 +12,7 @@ namespace sunfleck {
 
 namespace {
 
-const std::vector<std::string> methods{"clustering", "flat", "direct", "reference"};
+const std::vector<std::string> methods{"instantiation", "clustering", "flat", "direct", "reference"};
 
 /// What the densities of each quality were chosen for: rms error over organs in the near infrared, the worst band, on a canopy of
 /// leaves, coffee and wheat. An aim, not a bound: docs/accuracy.md tells what is reached where.
@@ -60,7 +60,7 @@ std::string name_of(Quality quality) {
 MethodChoice choose_method(const std::optional<std::string>& method, const std::optional<std::string>& quality,
                            const std::optional<double>& error, const SolveChoice& scene) {
   MethodChoice choice;
-  choice.method = checked_method(method ? *method : scene.method.value_or(methods.front()));
+  choice.method = checked_method(method ? *method : scene.method.value_or("clustering"));
   if (quality)
     choice.quality = quality_from_name(*quality);
   else if (error)

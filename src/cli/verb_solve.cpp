@@ -11,6 +11,7 @@
 #include <sunfleck/core/memory.hpp>
 #include <sunfleck/core/version.hpp>
 #include <sunfleck/format/scene_toml.hpp>
+#include <sunfleck/instantiation/solve.hpp>
 #include <sunfleck/radiosity/solve.hpp>
 #include <sunfleck/reference/path_tracer.hpp>
 #include <sunfleck/result/result_writer.hpp>
@@ -27,19 +28,29 @@ namespace {
 
 constexpr int not_converged = 3;  // exit code
 
-void say_what_was_read(const Scene& scene, const FacetScene& facets, double seconds, Progress& progress) {
+void say_what_was_read(const Scene& scene, const PlacedScene& placed, double seconds, Progress& progress) {
   for (const auto& note : scene.notes) progress.line("note: " + note);
   progress.line(fmt::format("read {}: {} of plants, {} of the ground, {}, {}, {} ({:.2f} s)", scene.file,
-                            counted(facets.plant_facets, "facet", "facets"), facets.size() - facets.plant_facets,
-                            counted(facets.organs.size(), "organ", "organs"), counted(scene.band_count(), "band", "bands"),
+                            counted(placed.first_ground_facet, "facet", "facets"), placed.facets - placed.first_ground_facet,
+                            counted(placed.organs, "organ", "organs"), counted(scene.band_count(), "band", "bands"),
                             counted(scene.states.size(), "state", "states"), seconds));
+}
+
+void say_what_is_dropped(const FacetScene& facets, Progress& progress) {
   if (facets.zero_area_facets > 0)
     progress.line(
         fmt::format("note: {} no area: kept as rows of zeros, not traced", counted(facets.zero_area_facets, "facet has", "facets have")));
 }
 
-SolveReport run_method(const MethodChoice& choice, const Scene& scene, const FacetScene& facets, const SolveOptions& options,
-                       std::uint64_t seed, IrradianceSink& sink, Progress& progress) {
+SolveReport run_method(const MethodChoice& choice, const Scene& scene, const PlacedScene& placed, const std::optional<FacetScene>& facets,
+                       const SolveOptions& options, std::uint64_t seed, IrradianceSink& sink, Progress& progress) {
+  if (choice.method == "instantiation") {
+    InstantiationSettings settings;
+    settings.seed = seed;
+    settings.threads = options.threads;
+    settings.density = instantiation_density(choice.quality);
+    return solve_instantiation(scene, placed, settings, sink, progress);
+  }
   if (choice.method == "reference") {
     ReferenceSettings settings;
     settings.seed = seed;
@@ -48,22 +59,21 @@ SolveReport run_method(const MethodChoice& choice, const Scene& scene, const Fac
       settings.samples = *options.samples;
     else if (scene.solve.samples)
       settings.samples = *scene.solve.samples;
-    return trace_reference(scene, facets, settings, sink, progress);
+    return trace_reference(scene, *facets, settings, sink, progress);
   }
   RadiositySettings settings;
   settings.seed = seed;
   settings.threads = options.threads;
   settings.density = density_of(choice.quality);
   settings.method = radiosity_method(choice.method);
-  return solve_radiosity(scene, facets, settings, sink, progress);
+  return solve_radiosity(scene, *facets, settings, sink, progress);
 }
 
-bool wants_certificate(const MethodChoice& choice, const Scene& scene, const FacetScene& facets, const SolveOptions& options) {
-  return choice.method != "reference" && options.certificate && scene.solve.certificate.value_or(true) &&
-         facets.plant_facets > facets.zero_area_facets;
+bool wants_certificate(const MethodChoice& choice, const Scene& scene, const PlacedScene& placed, const SolveOptions& options) {
+  return choice.method != "reference" && options.certificate && scene.solve.certificate.value_or(true) && placed.first_ground_facet > 0;
 }
 
-void say_timings(const SolveReport& report, std::size_t facets, double seconds, Progress& progress) {
+void say_timings(const SolveReport& report, std::uint64_t facets, double seconds, Progress& progress) {
   for (const auto& [phase, spent] : report.timings) progress.line(fmt::format("  {:<28}{:>9.2f} s", phase, spent));
   progress.line(fmt::format("  {:<28}{:>9.2f} s  {} facets/s, peak memory {}", "in all", seconds,
                             count_text(static_cast<double>(facets) / seconds), bytes_text(static_cast<double>(peak_resident_bytes()))));
@@ -80,31 +90,34 @@ int verb_solve(const SolveOptions& options, Progress& progress) {
   const Scene scene = read_scene(options.scene);
   const MethodChoice choice = choose_method(options.method, options.quality, options.error, scene.solve);
   const std::uint64_t seed = options.seed.value_or(scene.solve.seed.value_or(1));
-  const FacetScene facets = expand(scene);
+  const PlacedScene placed = place(scene);
+  std::optional<FacetScene> facets;  // every copy written out, for the methods that need it
+  if (choice.method != "instantiation") facets = expand(scene);
   const double read_seconds = total.seconds();
-  say_what_was_read(scene, facets, read_seconds, progress);
+  say_what_was_read(scene, placed, read_seconds, progress);
+  if (facets) say_what_is_dropped(*facets, progress);
   progress.check();
 
-  const PlacedScene placed = place(scene);
   const FacetRows rows(scene, placed);
   CertificateSettings checking;
   checking.seed = seed;
   checking.threads = options.threads;
   std::vector<ChosenOrgan> chosen;
   ResultWriter writer(options.result, scene, placed, scene.output, software_version(), choice.method);
-  if (wants_certificate(choice, scene, facets, options)) {
+  if (wants_certificate(choice, scene, placed, options)) {
     chosen = choose_organs(rows, checking);
     std::vector<std::uint64_t> organs;
     for (const auto& c : chosen) organs.push_back(c.organ);
     writer.keep_totals(std::move(organs));
   }
-  SolveReport report = run_method(choice, scene, facets, options, seed, writer, progress);
+  SolveReport report = run_method(choice, scene, placed, facets, options, seed, writer, progress);
   report.timings.emplace(report.timings.begin(), "read", read_seconds);
 
   std::optional<Certificate> certificate;
-  if (wants_certificate(choice, scene, facets, options)) {
+  if (wants_certificate(choice, scene, placed, options)) {
     const Stopwatch watch;
-    certificate = certify(scene, rows, facets, chosen, writer.totals(), report.balance, checking, progress);
+    if (!facets) facets = expand(scene);
+    certificate = certify(scene, rows, *facets, chosen, writer.totals(), report.balance, checking, progress);
     add_seconds(report.timings, "certificate", watch.seconds());
   }
   progress.check();
@@ -113,7 +126,7 @@ int verb_solve(const SolveOptions& options, Progress& progress) {
   add_seconds(report.timings, "finish the file", finishing.seconds());
 
   print_solve_table(scene, report, certificate ? &*certificate : nullptr);
-  say_timings(report, facets.size(), total.seconds(), progress);
+  say_timings(report, placed.facets, total.seconds(), progress);
   progress.line("wrote " + options.result);
   if (report.status == SolveStatus::converged) return 0;
   progress.line(fmt::format("sunfleck: did not converge: the residual reached is {:.2e}; the result is written with status 'not_converged'",

@@ -113,7 +113,8 @@ struct CopyRays::Impl {
     const auto low_x = std::ceil((cell.x_low - b.high.x) / cell.width()), high_x = std::floor((cell.x_high - b.low.x) / cell.width());
     const auto low_y = std::ceil((cell.y_low - b.high.y) / cell.depth()), high_y = std::floor((cell.y_high - b.low.y) / cell.depth());
     if ((high_x - low_x + 1) * (high_y - low_y + 1) > 1e6)
-      throw InputError("domain.periodic", "a plant that reaches over more than 10^6 cells", "a cell of about the plants' size, all in metres");
+      throw InputError("domain.periodic", "a plant that reaches over more than 10^6 cells",
+                       "a cell of about the plants' size, all in metres");
     for (double y = low_y; y <= high_y; ++y)
       for (double x = low_x; x <= high_x; ++x) add_instance(c, {x * cell.width(), y * cell.depth(), 0.0});
   }
@@ -210,8 +211,8 @@ struct CopyRays::Impl {
 CopyRays::CopyRays(const CopyScene& scene) : impl_(std::make_unique<Impl>(scene)) {}
 CopyRays::~CopyRays() = default;
 
-CopyHit CopyRays::first_hit(const Vec3& origin, const Vec3& direction, double skip) const {
-  return impl_->trace(origin, direction, skip, std::numeric_limits<double>::infinity());
+CopyHit CopyRays::first_hit(const Vec3& origin, const Vec3& direction, double skip, double range) const {
+  return impl_->trace(origin, direction, skip, range);
 }
 
 bool CopyRays::occluded(const Vec3& origin, const Vec3& direction, double skip, double range) const {
@@ -219,7 +220,8 @@ bool CopyRays::occluded(const Vec3& origin, const Vec3& direction, double skip, 
 }
 
 std::size_t CopyRays::bytes() const {
-  return static_cast<std::size_t>(impl_->held.load()) + impl_->instance_copy.capacity() * 4 + impl_->instance_moved.capacity() * sizeof(Vec3);
+  return static_cast<std::size_t>(impl_->held.load()) + impl_->instance_copy.capacity() * 4 +
+         impl_->instance_moved.capacity() * sizeof(Vec3);
 }
 
 }  // namespace sunfleck

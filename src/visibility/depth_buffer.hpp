@@ -55,7 +55,9 @@ void draw_run(int count, float tolerance, float* depth, std::uint32_t* standing,
 template <class Met>
 void draw_span(const ProjectedTriangle& t, std::uint32_t base, std::uint32_t front, float sign, float depth_offset, int count, float dx,
                float dy, float tolerance, float* depth, std::uint32_t* code, Met&& met) {
-  const auto depth_at = [&t, dx, dy, sign, depth_offset](int i) { return sign * t.depth_at(dx + static_cast<float>(i), dy) + depth_offset; };
+  const auto depth_at = [&t, dx, dy, sign, depth_offset](int i) {
+    return sign * t.depth_at(dx + static_cast<float>(i), dy) + depth_offset;
+  };
   if (t.split == 1) {
     met(base, count);
     draw_run(count, tolerance, depth, code, depth_at, [c = 2 * base + front](int) { return c; });
@@ -77,7 +79,8 @@ void draw_span(const ProjectedTriangle& t, std::uint32_t base, std::uint32_t fro
       met(codes[i] >> 1, end - i);
       i = end;
     }
-    draw_run(n, tolerance, depth + begin, code + begin, [&](int i) { return depth_at(begin + i); }, [&codes](int i) { return codes[i]; });
+    draw_run(
+        n, tolerance, depth + begin, code + begin, [&](int i) { return depth_at(begin + i); }, [&codes](int i) { return codes[i]; });
   }
 }
 

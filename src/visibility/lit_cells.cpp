@@ -241,7 +241,8 @@ class LitCellsCounter {
         int end = column + 1;
         while (end < columns && buffer.code[static_cast<std::size_t>(row) * tile + end] == code) ++end;
         if (code != nothing) {
-          const auto image = static_cast<std::size_t>(std::upper_bound(first_code.begin(), first_code.end(), code >> 1) - first_code.begin()) - 1;
+          const auto image =
+              static_cast<std::size_t>(std::upper_bound(first_code.begin(), first_code.end(), code >> 1) - first_code.begin()) - 1;
           add_saturated(visible_[out_.first[placed_[bins_[t][image]].copy] + ((code >> 1) - first_code[image])],
                         static_cast<std::uint32_t>(end - column));
         }

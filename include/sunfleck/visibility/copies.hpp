@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -45,8 +46,8 @@ class CopyRays {
   CopyRays(const CopyRays&) = delete;
   CopyRays& operator=(const CopyRays&) = delete;
 
-  /// The first thing farther than `skip` [m] along the unit vector `direction`.
-  CopyHit first_hit(const Vec3& origin, const Vec3& direction, double skip) const;
+  /// The first thing farther than `skip` and within `range` [m] along the unit vector `direction`.
+  CopyHit first_hit(const Vec3& origin, const Vec3& direction, double skip, double range = std::numeric_limits<double>::infinity()) const;
   /// Is there anything within `range` [m]?
   bool occluded(const Vec3& origin, const Vec3& direction, double skip, double range) const;
   std::size_t bytes() const;

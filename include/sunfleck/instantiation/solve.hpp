@@ -1,0 +1,42 @@
+// Radiosity of a scene whose plants are copies of few originals: memory follows the originals, not the leaves.
+#pragma once
+
+#include <sunfleck/core/progress.hpp>
+#include <sunfleck/scene/placed_scene.hpp>
+#include <sunfleck/scene/solution.hpp>
+
+namespace sunfleck {
+
+/// How finely an original is sampled by global lines.
+struct OperatorDensity {
+  std::uint32_t directions;   ///< over the hemisphere [-]
+  double lines_per_organ;     ///< mean lines that meet an organ, per direction [-]
+  std::uint32_t field_pixels; ///< K: fields of light that enter and leave have K x K pixels a direction [-]
+  std::uint32_t points;       ///< rays per pixel from a copy to what surrounds it [-]
+};
+
+struct InstantiationDensity {
+  OperatorDensity coarse;      ///< for the iteration
+  OperatorDensity fine;        ///< once, for the final gather
+  double elements_per_organ;   ///< elements of an organ of the mean size [-]
+  std::uint32_t sun_samples;   ///< points of the sun's disc [-]
+  double sun_lines_per_organ;  ///< over all sun samples together [-]
+  std::uint32_t ground_rays;   ///< per facet of the ground [-]
+  double tolerance;            ///< of the outer iteration: last change of the fields, extrapolated, over the fields [-]
+  double inner_tolerance;      ///< change of a sweep inside a copy over the radiosities [-]
+};
+InstantiationDensity instantiation_density(Quality quality);
+
+struct InstantiationSettings : SolveSettings {
+  InstantiationDensity density = instantiation_density(Quality::standard);
+};
+
+/// Solves E = E0 + F R E copy by copy. What is inside a copy is its original's line operator, traced once in the original's frame and
+/// shared; what differs from copy to copy are small fields, the radiance that enters and leaves per direction and pixel of a coarse
+/// grid over the original's silhouette (with one pixel: the phase function of Soler et al. 2003, doi:10.1145/636886.636893). Copies are
+/// opened one by one, each once in every outer iteration and once at the end, when rows go to the sink in their order; nothing of a
+/// copy but its fields stays in memory. docs/instantiation.md describes the method. Throws Stopped; InputError.
+SolveReport solve_instantiation(const Scene& scene, const PlacedScene& placed, const InstantiationSettings& settings, IrradianceSink& sink,
+                                Progress& progress);
+
+}  // namespace sunfleck

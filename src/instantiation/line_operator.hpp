@@ -1,0 +1,64 @@
+// What an original does with light, from global lines in its own frame.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include <sunfleck/core/progress.hpp>
+#include <sunfleck/instantiation/solve.hpp>
+#include <sunfleck/radiosity/elements.hpp>
+#include <sunfleck/visibility/projection.hpp>
+
+namespace sunfleck {
+
+/// Element sides: 2 * element + (0 front, 1 back). Fields: (2 * direction + sense) * K^2 + pixel; sense 0 looks along the direction, 1
+/// against it; the pixel is one of K x K parts of the direction's grid.
+///
+/// With n_ij the lines on which side i sees side j, n_if those on which it looks out through field f, and W_i all lines that meet i:
+///   E_i = (sum_j n_ij B_j + sum_f n_if L_f) / W_i,
+/// where L_f is what comes in through f (radiance times pi). All weights of a row sum to 1, so light is neither made nor lost.
+class LineOperator {
+ public:
+  /// `seed` chooses the turns and shifts of the grids.
+  LineOperator(const Elements& elements, const OperatorDensity& density, std::uint64_t seed, Progress& progress);
+
+  std::uint32_t directions() const { return directions_; }
+  std::uint32_t pixels() const { return pixels_; }
+  std::size_t fields() const { return field_lines.size(); }
+  Vec3 direction(std::size_t sense) const { return sense & 1 ? -projections_[sense >> 1].direction : projections_[sense >> 1].direction; }
+
+  /// The field through which light leaves that runs along the unit vector `d` and passes `p` (relative to the surface's origin): that of
+  /// the nearest direction.
+  std::uint32_t field_at(const Vec3& p, const Vec3& d) const;
+  /// The field of the same direction whose pixel p lies in.
+  std::uint32_t field_of(std::size_t sense, const Vec3& p) const;
+
+  std::size_t bytes() const;
+
+  struct Rows {
+    std::vector<std::uint64_t> start;   ///< [sides + 1]
+    std::vector<std::uint32_t> column;  ///< side or field
+    std::vector<std::uint8_t> count;    ///< lines
+  };
+  Rows inside;                     ///< n_ij
+  Rows outside;                    ///< n_if
+  std::vector<std::uint32_t> lines;  ///< [elements] W_i
+  std::vector<float> field_lines;    ///< [fields] lines that leave through each
+  std::vector<std::uint32_t> point_start;        ///< [fields + 1]
+  std::vector<std::array<float, 3>> points;      ///< where lines leave, chosen at random; relative to the surface's origin [m]
+  std::vector<std::array<float, 6>> segments;    ///< some stretches of lines between two sides that see each other, at random [m]
+  std::vector<std::uint32_t> stand_in;           ///< [elements] itself, or the nearest in order of the same material that lines have met
+  double line_area = 0;                          ///< [m^2]
+  std::uint64_t fragments = 0;
+
+ private:
+  void trace(const Elements& elements, const OperatorDensity& density, std::uint64_t seed, Progress& progress);
+  void tabulate_directions();
+
+  std::uint32_t directions_ = 0, pixels_ = 0;
+  std::vector<Projection> projections_;
+  std::vector<std::uint16_t> nearest_;  ///< sense by octahedral map
+};
+
+}  // namespace sunfleck

@@ -1,0 +1,61 @@
+// What copies see of each other, of the ground and of the sky.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <sunfleck/instantiation/similarity.hpp>
+#include <sunfleck/scene/scene.hpp>
+#include <sunfleck/visibility/copies.hpp>
+
+#include "instantiation/line_operator.hpp"
+
+namespace sunfleck {
+
+/// Where a ray from a copy or the ground ends: in an outgoing field of a member, on a side of a facet of the ground, or in the sky.
+struct RayEnd {
+  static constexpr std::uint32_t sky = 0xffffffffu, ground_bit = 0x80000000u;
+  std::uint32_t target = sky;  ///< member; or ground_bit | facet
+  std::uint32_t field = 0;     ///< of the member; of the ground: 0 front, 1 back
+
+  bool is_sky() const { return target == sky; }
+  bool is_ground() const { return !is_sky() && (target & ground_bit); }
+  std::uint32_t facet() const { return target & ~ground_bit; }
+};
+
+/// An original as light sees it. The original's frame: p = elements.surface.origin + (coordinates of the surface).
+struct OriginalLight {
+  Elements elements;
+  std::vector<std::uint32_t> facet_material;  ///< [n] row of Scene::optics, by facet of the original
+  std::vector<std::uint32_t> facet_of_part;   ///< [parts + 1] first facet of each part
+  std::unique_ptr<LineOperator> coarse;
+};
+
+/// Rays through a scene of members.
+class Surroundings {
+ public:
+  Surroundings(const CopyScene& scene, const std::vector<Similarity>& maps, const std::vector<OriginalLight>& originals);
+
+  /// From a point of member `m`, given in its original's surface coordinates, along the world direction `d`.
+  RayEnd look(std::uint32_t m, const std::array<float, 3>& point, const Vec3& d) const;
+  /// Which other member, or image of a member, stands between two points of member `m` (in its surface coordinates) that see each other
+  /// inside its original; none = nothing, m = an image of itself.
+  static constexpr std::uint32_t none = 0xffffffffu;
+  std::uint32_t stands_between(std::uint32_t m, const std::array<float, 6>& segment) const;
+  /// From a world point of facet of the ground.
+  RayEnd look_from_ground(const Vec3& point, const Vec3& d) const;
+  /// Is the sun hidden from a world point?
+  bool hidden(const Vec3& point, const Vec3& d) const;
+  std::size_t bytes() const { return rays_.bytes(); }
+
+ private:
+  RayEnd end_of(const CopyHit& hit, const Vec3& d) const;
+
+  const CopyScene& scene_;
+  const std::vector<Similarity>& maps_;
+  const std::vector<OriginalLight>& originals_;
+  CopyRays rays_;
+  double skip_ = 0;  ///< [m] rays begin so far from where they start
+};
+
+}  // namespace sunfleck
