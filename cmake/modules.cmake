@@ -1,9 +1,8 @@
 # One library target per module: sunfleck_M from src/M/*.cpp with public headers in include/sunfleck/M.
 
 # -Wno-restrict: g++ 12 sees overlaps in "text" + std::string that are not there (GCC bug 105651).
-# -Wno-maybe-uninitialized: g++ 12 warns inside its own AVX-512 header (GCC bug 105593).
 function(sunfleck_options target)
-  target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wno-restrict -Wno-maybe-uninitialized -Werror
+  target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wno-restrict -Werror
                          -fno-math-errno -fno-trapping-math)  # lets loops with rounding be vectorised; changes no result
   if(SUNFLECK_ISA)
     target_compile_options(${target} PRIVATE -march=${SUNFLECK_ISA})
