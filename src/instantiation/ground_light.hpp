@@ -14,14 +14,15 @@ namespace sunfleck {
 /// What each facet of the ground sees. Sides: 2 * facet + (0 front, 1 back); backs see nothing unless the sky reaches below the horizon
 /// or the ground is a mesh.
 struct GroundView {
-  std::uint32_t rays = 0;           ///< per side
-  std::vector<float> area;          ///< [facets] one-sided [m^2]
-  std::vector<bool> seen;           ///< [sides] rays were sent
-  std::vector<RayEnd> ends;         ///< [sides][rays]
+  std::uint32_t rays = 0;               ///< per side
+  std::vector<float> area;              ///< [facets] one-sided [m^2]
+  std::vector<bool> seen;               ///< [sides] rays were sent
+  std::vector<RayEnd> ends;             ///< [sides][rays]
   std::vector<std::vector<float>> sky;  ///< per distinct sky: irradiance over the sky's horizontal irradiance [sides]
-  std::vector<std::vector<float>> lit;  ///< per distinct sun: fraction of the facet that it reaches, times the cosine towards the side [sides]
+  std::vector<std::vector<float>>
+      lit;  ///< per distinct sun: fraction of the facet that it reaches, times the cosine towards the side [sides]
   std::vector<std::vector<float>> sunlit;  ///< per distinct sun: fraction of the side that it reaches [sides]
-  std::vector<float> sky_seen;      ///< [sides] fraction of rays that end in the sky or nowhere
+  std::vector<float> sky_seen;             ///< [sides] fraction of rays that end in the sky or nowhere
   std::size_t bytes() const;
 };
 

@@ -14,9 +14,9 @@ namespace sunfleck {
 
 namespace {
 
-constexpr int octahedron = 96;               // cells along an edge of the table of directions
+constexpr int octahedron = 96;  // cells along an edge of the table of directions
 constexpr std::size_t segments_per_direction = 6;
-constexpr std::size_t row_ranges = 4;        // parts in which rows are made, one thread each
+constexpr std::size_t row_ranges = 4;  // parts in which rows are made, one thread each
 constexpr std::uint32_t line_begins = 1u << 31;
 
 /// What one direction found: sides along lines from low to high (the upward side; its other bit is the downward one), the first of each
@@ -94,13 +94,14 @@ LineOperator::Rows make_rows(std::size_t rows, const Visit& visit) {
     part.count.assign(count.begin(), count.end());
   });
   for (std::size_t i = 0; i < rows; ++i) out.start[i + 1] += out.start[i];
-  out.column.reserve(out.start.back());
+  out.column.reserve(out.start.back() + LineOperator::Rows::padding);
   out.count.reserve(out.start.back());
   for (auto& part : parts) {
     out.column.insert(out.column.end(), part.column.begin(), part.column.end());
     out.count.insert(out.count.end(), part.count.begin(), part.count.end());
     part = {};
   }
+  out.column.insert(out.column.end(), LineOperator::Rows::padding, 0);
   return out;
 }
 
@@ -258,8 +259,8 @@ std::uint32_t LineOperator::field_at(const Vec3& p, const Vec3& d) const {
 }
 
 std::size_t LineOperator::bytes() const {
-  std::size_t total = bytes_of(lines) + bytes_of(field_lines) + bytes_of(point_start) + bytes_of(points) + bytes_of(segments) + bytes_of(stand_in) +
-                      bytes_of(projections_) + bytes_of(nearest_);
+  std::size_t total = bytes_of(lines) + bytes_of(field_lines) + bytes_of(point_start) + bytes_of(points) + bytes_of(segments) +
+                      bytes_of(stand_in) + bytes_of(projections_) + bytes_of(nearest_);
   for (const auto* rows : {&inside, &outside}) total += bytes_of(rows->start) + bytes_of(rows->column) + bytes_of(rows->count);
   return total;
 }

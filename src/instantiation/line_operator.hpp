@@ -37,19 +37,20 @@ class LineOperator {
   std::size_t bytes() const;
 
   struct Rows {
-    std::vector<std::uint64_t> start;   ///< [sides + 1]
-    std::vector<std::uint32_t> column;  ///< side or field
-    std::vector<std::uint8_t> count;    ///< lines
+    static constexpr std::size_t padding = 16;  ///< entries beyond the last, so that loops may look ahead
+    std::vector<std::uint64_t> start;           ///< [sides + 1]
+    std::vector<std::uint32_t> column;          ///< side or field
+    std::vector<std::uint8_t> count;            ///< lines
   };
-  Rows inside;                     ///< n_ij
-  Rows outside;                    ///< n_if
-  std::vector<std::uint32_t> lines;  ///< [elements] W_i
-  std::vector<float> field_lines;    ///< [fields] lines that leave through each
-  std::vector<std::uint32_t> point_start;        ///< [fields + 1]
-  std::vector<std::array<float, 3>> points;      ///< where lines leave, chosen at random; relative to the surface's origin [m]
-  std::vector<std::array<float, 6>> segments;    ///< some stretches of lines between two sides that see each other, at random [m]
-  std::vector<std::uint32_t> stand_in;           ///< [elements] itself, or the nearest in order of the same material that lines have met
-  double line_area = 0;                          ///< [m^2]
+  Rows inside;                                 ///< n_ij
+  Rows outside;                                ///< n_if
+  std::vector<std::uint32_t> lines;            ///< [elements] W_i
+  std::vector<float> field_lines;              ///< [fields] lines that leave through each
+  std::vector<std::uint32_t> point_start;      ///< [fields + 1]
+  std::vector<std::array<float, 3>> points;    ///< where lines leave, chosen at random; relative to the surface's origin [m]
+  std::vector<std::array<float, 6>> segments;  ///< some stretches of lines between two sides that see each other, at random [m]
+  std::vector<std::uint32_t> stand_in;         ///< [elements] itself, or the nearest in order of the same material that lines have met
+  double line_area = 0;                        ///< [m^2]
   std::uint64_t fragments = 0;
 
  private:

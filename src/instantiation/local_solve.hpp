@@ -26,7 +26,10 @@ inline void add_row(const LineOperator::Rows& rows, std::size_t row, float share
   const std::uint8_t* count = rows.count.data();
   std::uint64_t k = rows.start[row];
   const std::uint64_t end = rows.start[row + 1];
+  constexpr std::uint64_t ahead = 12;  // entries: what they point to comes from beyond the second cache, in no order
   for (; k + 1 < end; k += 2) {
+    __builtin_prefetch(x + column[k + ahead]);
+    __builtin_prefetch(x + column[k + ahead + 1]);
     a += static_cast<float>(count[k]) * x[column[k]].v;
     b += static_cast<float>(count[k + 1]) * x[column[k + 1]].v;
   }
@@ -92,8 +95,7 @@ SweepReport solve_inside(const LineOperator& op, const std::vector<std::uint32_t
       add_row<width>(op.inside, 2 * i, share, radiosity.data(), front);
       add_row<width>(op.inside, 2 * i + 1, share, radiosity.data(), back);
       const auto& m = optics[material[i]];
-      const Vector b_front = m.front.v * front.v + m.transmittance.v * back.v,
-                   b_back = m.back.v * back.v + m.transmittance.v * front.v;
+      const Vector b_front = m.front.v * front.v + m.transmittance.v * back.v, b_back = m.back.v * back.v + m.transmittance.v * front.v;
       Vector &old_front = radiosity[2 * i].v, &old_back = radiosity[2 * i + 1].v;
       const Vector d_front = b_front - old_front, d_back = b_back - old_back;
       change += (d_front < 0 ? -d_front : d_front) + (d_back < 0 ? -d_back : d_back);

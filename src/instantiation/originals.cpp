@@ -45,7 +45,7 @@ bool same_parts(const Original& a, const Original& b) {
 Originals find_originals(const Scene& scene, const PlacedScene& placed) {
   Originals out;
   const auto alike = first_alike(scene);
-  std::map<std::uint32_t, std::uint32_t> plain;                     // plant -> original without a stretch
+  std::map<std::uint32_t, std::uint32_t> plain;                   // plant -> original without a stretch
   std::map<std::uint32_t, std::vector<std::uint32_t>> stretched;  // plant -> originals with one
   for (std::uint32_t c = 0; c < placed.copies.size(); ++c) {
     const auto& copy = placed.copies[c];

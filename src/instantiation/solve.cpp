@@ -7,6 +7,7 @@
 #include <numbers>
 #include <optional>
 
+#include <Eigen/Dense>
 #include <fmt/format.h>
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
@@ -26,8 +27,10 @@ namespace sunfleck {
 
 namespace {
 
-constexpr std::uint32_t most_passes = 60, most_sweeps = 200;
-constexpr double tangled_share = 0.01;              // of lines inside a copy that meet another
+constexpr std::size_t basis_bytes = std::size_t{256} << 20;  // of steps of the outer iteration
+constexpr std::uint32_t most_passes = 100, most_sweeps = 200;
+constexpr std::uint64_t small_scene = 2'000'000;  // facets
+constexpr double tangled_share = 0.01;            // of lines inside a copy that meet another
 constexpr std::uint64_t most_merged_facets = 300'000;
 constexpr std::size_t window_bytes = std::size_t{96} << 20;  // rows of finished copies that wait for their turn
 constexpr std::uint64_t coarse_stream = 0x7d3f1c5b2e8a9604ULL, fine_stream = 0x1b9e4d6a7c2f5083ULL, sun_stream = 0x5a6c3e1f9b7d2048ULL,
@@ -58,7 +61,8 @@ class InstantiationSolver {
         states_(scene.states.size()),
         bands_(scene.band_count()),
         columns_(states_ * bands_),
-        lights_(light_sources(scene.states)) {}
+        lights_(light_sources(scene.states)),
+        density_(adapted(settings.density, placed.facets)) {}
 
   SolveReport run() {
     report_.method = "instantiation";
@@ -67,6 +71,7 @@ class InstantiationSolver {
     found_ = find_originals(scene_, placed_);
     make_originals();
     untangle();
+    report_originals();
     timed("originals", watch);
     watch = {};
     sun();
@@ -88,18 +93,40 @@ class InstantiationSolver {
 
   // ---- originals
 
+  /// In small scenes finer lines cost little: they take away the bias of lines that serve for several bounces. In large ones organs are
+  /// many, and the sun's projection would take longest.
+  static InstantiationDensity adapted(InstantiationDensity d, std::uint64_t facets) {
+    if (facets < small_scene) {
+      d.coarse.directions *= 2;
+      d.coarse.lines_per_organ *= 1.5;
+    } else {
+      d.sun_lines_per_organ *= 0.3;
+    }
+    return d;
+  }
+
   void make_originals() {
     for (std::size_t o = 0; o < found_.originals.size(); ++o) {
       progress_.fraction("originals", static_cast<double>(o) / static_cast<double>(found_.originals.size()));
       originals_.push_back(make_original(found_.originals[o]));
       auto& original = originals_.back();
-      original.coarse = std::make_unique<LineOperator>(original.elements, settings_.density.coarse,
-                                                       mix(settings_.seed, coarse_stream, o), progress_);
+      original.coarse =
+          std::make_unique<LineOperator>(original.elements, density_.coarse, mix(settings_.seed, coarse_stream, o), progress_);
     }
+    for (const auto& o : originals_) copies_.surfaces.push_back(&o.elements.surface);
+    for (const auto& m : found_.members) {
+      maps_.push_back(m.map);
+      copies_.copies.push_back({m.original, m.map.affine()});
+    }
+    copies_.ground = placed_.ground;
+    copies_.periodic = scene_.periodic;
+  }
+
+  void report_originals() {
     std::uint64_t elements = 0, links = 0, bytes = 0;
     for (const auto& o : originals_) {
       elements += o.elements.size();
-      links += o.coarse->inside.column.size();
+      links += o.coarse->inside.count.size();
       bytes += o.coarse->bytes() + o.elements.bytes();
       fragments_ += o.coarse->fragments;
     }
@@ -109,14 +136,8 @@ class InstantiationSolver {
     report_.counts.emplace_back("links", links);
     report_.memory.emplace_back("originals", bytes);
     links_ = links;
-    progress_.line(fmt::format("{} originals for {} copies, {} elements, {} links", originals_.size(), found_.members.size(), elements, links));
-    for (const auto& o : originals_) copies_.surfaces.push_back(&o.elements.surface);
-    for (const auto& m : found_.members) {
-      maps_.push_back(m.map);
-      copies_.copies.push_back({m.original, m.map.affine()});
-    }
-    copies_.ground = placed_.ground;
-    copies_.periodic = scene_.periodic;
+    progress_.line(
+        fmt::format("{} originals for {} copies, {} elements, {} links", originals_.size(), found_.members.size(), elements, links));
   }
 
   // ---- copies that reach into each other
@@ -165,7 +186,9 @@ class InstantiationSolver {
         worst = std::max(worst, p.share);
         if (p.share > tangled_share) pairs.push_back(p);
       }
-    if (getenv("SAY")) fmt::print(stderr, "worst tangle {:.4f} own {:.4f} pairs {}\n", worst, own.empty() ? 0.0 : *std::max_element(own.begin(), own.end()), pairs.size());
+    if (getenv("SAY"))
+      fmt::print(stderr, "worst tangle {:.4f} own {:.4f} pairs {}\n", worst, own.empty() ? 0.0 : *std::max_element(own.begin(), own.end()),
+                 pairs.size());
     std::stable_sort(pairs.begin(), pairs.end(), [](const Pair& a, const Pair& b) { return a.share > b.share; });
     std::vector<std::uint32_t> root(maps_.size());
     std::vector<std::uint64_t> facets(maps_.size());
@@ -210,7 +233,7 @@ class InstantiationSolver {
     const FacetScene facets = expand(own);
     RadiositySettings radiosity;
     radiosity.density = density_of(Quality::standard);
-    radiosity.density.elements_per_organ = settings_.density.elements_per_organ;
+    radiosity.density.elements_per_organ = density_.elements_per_organ;
     out.elements = make_elements(own, facets, radiosity);
     out.facet_material = facets.optics;
     return out;
@@ -219,7 +242,7 @@ class InstantiationSolver {
   // ---- direct light and what sees what
 
   void sun() {
-    const auto& density = settings_.density;
+    const auto& density = density_;
     double pitch = 0;
     for (std::size_t m = 0; m < maps_.size(); ++m) {
       const double organ = originals_[found_.members[m].original].elements.organ_area * maps_[m].scale * maps_[m].scale;
@@ -252,7 +275,7 @@ class InstantiationSolver {
       look_from(static_cast<std::uint32_t>(m), coarse_of(m), ends_.data() + end_start_[m]);
     });
     progress_.check();
-    ground_ = view_from_ground(scene_, placed_.ground, *around_, lights_, settings_.density.ground_rays, settings_.density.sun_samples,
+    ground_ = view_from_ground(scene_, placed_.ground, *around_, lights_, density_.ground_rays, density_.sun_samples,
                                mix(settings_.seed, ground_stream), progress_);
     report_.counts.emplace_back("rays", ends_.size() + ground_.ends.size());
     report_.memory.emplace_back("rays", around_->bytes() + bytes_of(ends_) + ground_.bytes());
@@ -480,8 +503,8 @@ class InstantiationSolver {
         incoming<width>(b, op, stored_ends(b), in, direct, field);
         add_outside<width>(op, field, source);
         if (direct) add_sun<width>(b, source);
-        const auto swept = solve_inside<width>(op, original.elements.material, optics_of<width>(b), source, static_cast<float>(settings_.density.inner_tolerance),
-                                               most_sweeps, radiosity);
+        const auto swept = solve_inside<width>(op, original.elements.material, optics_of<width>(b), source,
+                                               static_cast<float>((direct ? 1.0 : 5.0) * density_.inner_tolerance), most_sweeps, radiosity);
         sweeps[q] = swept.sweeps;
         outgoing<width>(op, radiosity, field);
         for (std::size_t j = 0; j < b.members.size(); ++j)
@@ -496,67 +519,112 @@ class InstantiationSolver {
     reflect_from_ground(out.ground);
   }
 
-  /// Power that leaves through the fields, per column.
-  std::vector<double> norms(const Light& light) const {
+  /// Scalar product of two lights per column: power that leaves through the fields and from the ground as the weight.
+  std::vector<double> product(const Light& a, const Light& b) const {
     std::vector<double> out(columns_, 0.0);
     for (std::size_t m = 0; m < maps_.size(); ++m) {
       const auto& op = coarse_of(m);
       const double unit = maps_[m].scale * maps_[m].scale * op.line_area / op.directions();
+      const float *x = a.fields.data() + field_start_[m] * columns_, *y = b.fields.data() + field_start_[m] * columns_;
       for (std::size_t f = 0; f < op.fields(); ++f)
-        for (std::size_t c = 0; c < columns_; ++c)
-          out[c] += unit * op.field_lines[f] * std::fabs(light.fields[(field_start_[m] + f) * columns_ + c]);
+        for (std::size_t c = 0; c < columns_; ++c) out[c] += unit * op.field_lines[f] * x[f * columns_ + c] * y[f * columns_ + c];
     }
     for (std::size_t side = 0; side < ground_.seen.size(); ++side)
       for (std::size_t c = 0; c < columns_; ++c)
-        out[c] += ground_.area[side / 2] * std::fabs(light.ground[side * columns_ + c]);
+        out[c] += double{ground_.area[side / 2]} * a.ground[side * columns_ + c] * b.ground[side * columns_ + c];
     return out;
   }
 
+  Light no_light() const {
+    return {std::vector<float>(field_start_.back() * columns_, 0.0f), std::vector<float>(ground_.seen.size() * columns_, 0.0f)};
+  }
+
+  /// x = b + A x, where A is a pass without direct light. Steps d_k = A^k r from the residual r are all kept, a few, and combined so that
+  /// the residual |r - sum c_k (d_k - d_{k+1})| is least, column by column: GMRES on the power basis (reduced rank extrapolation, Sidi
+  /// 1991, doi:10.1016/0377-0427(91)90013-A), which is well enough conditioned for so few. Then again from the true residual.
   void iterate() {
     const auto batches = batches_of(all_members());
-    const std::size_t values = field_start_.back() * columns_, ground = ground_.seen.size() * columns_;
-    const double tolerance = settings_.tolerance > 0 ? settings_.tolerance : settings_.density.tolerance;
+    const double tolerance = settings_.tolerance > 0 ? settings_.tolerance : density_.tolerance;
+    total_ = no_light();
+    const std::size_t bytes = bytes_of(total_.fields) + bytes_of(total_.ground);
+    const auto most_steps = static_cast<std::size_t>(std::clamp<std::uint64_t>(basis_bytes / std::max<std::size_t>(bytes, 1), 3, 10));
     Stopwatch watch;
-    total_ = {std::vector<float>(values, 0.0f), std::vector<float>(ground, 0.0f)};
-    Light step{std::vector<float>(values), {}}, next{std::vector<float>(values), {}};
-    report_.memory.emplace_back("fields", 3 * (bytes_of(total_.fields) + bytes_of(total_.ground)));
-    std::vector<double> before;
-    for (std::uint32_t k = 0;; ++k) {
-      pass(batches, k == 0 ? nullptr : &step, k == 0, next);
-      std::swap(step, next);
-      next.fields.resize(values);
-      const auto now = norms(step);
-      for (std::size_t i = 0; i < values; ++i) total_.fields[i] += step.fields[i];
-      for (std::size_t i = 0; i < ground; ++i) total_.ground[i] += step.ground[i];
-      const auto all = norms(total_);
-      double residual = 0, rest = 0;
-      std::vector<double> beyond(columns_, 0.0);  // sum of all later steps over this one, as they shrink alike
-      for (std::size_t c = 0; c < columns_; ++c) {
-        if (!(all[c] > 0)) continue;
-        residual = std::max(residual, now[c] / all[c]);
-        if (!before.empty() && before[c] > 0) {
-          const double ratio = std::min(0.98, now[c] / before[c]);
-          beyond[c] = ratio / (1 - ratio);
-        } else {
-          beyond[c] = 1.0;
+    std::vector<double> scale;  // |b| per column
+    std::size_t kept = 0;
+    bool done = false;
+    for (std::uint32_t passes = 0; !done && passes < most_passes;) {
+      std::vector<Light> step(1, no_light());
+      pass(batches, passes == 0 ? nullptr : &total_, true, step[0]);
+      for (std::size_t i = 0; i < total_.fields.size(); ++i) step[0].fields[i] -= total_.fields[i];
+      for (std::size_t i = 0; i < total_.ground.size(); ++i) step[0].ground[i] -= total_.ground[i];
+      ++passes;
+      const auto first = product(step[0], step[0]);
+      if (scale.empty()) scale = first;
+      done = relative(first, scale) <= tolerance;
+      say_residual(passes, relative(first, scale), watch);
+      std::vector<Eigen::MatrixXd> gram(columns_, Eigen::MatrixXd::Zero(most_steps + 1, most_steps + 1));  // d_i . d_j
+      for (std::size_t c = 0; c < columns_; ++c) gram[c](0, 0) = first[c];
+      std::vector<Eigen::VectorXd> weights(columns_);
+      while (!done && step.size() <= most_steps && passes < most_passes) {
+        step.push_back(no_light());
+        pass(batches, &step[step.size() - 2], false, step.back());
+        ++passes;
+        const auto n = static_cast<Eigen::Index>(step.size()) - 1;
+        for (Eigen::Index i = 0; i <= n; ++i) {
+          const auto dot = product(step[i], step.back());
+          for (std::size_t c = 0; c < columns_; ++c) gram[c](i, n) = gram[c](n, i) = dot[c];
         }
-        rest = std::max(rest, beyond[c] * now[c] / all[c]);
+        double residual = 0;
+        for (std::size_t c = 0; c < columns_; ++c) {
+          const double left = least_residual(gram[c].topLeftCorner(n + 1, n + 1), weights[c]);
+          if (scale[c] > 0) residual = std::max(residual, std::sqrt(left / scale[c]));
+        }
+        say_residual(passes, residual, watch);
+        done = residual <= tolerance;
       }
-      report_.convergence.push_back({0, k, residual, links_, watch.seconds()});
-      progress_.line(fmt::format("pass {}: residual {:.1e}", k, residual));
-      // the extrapolated rest is right to a tenth or so
-      const bool done = k > 0 && 0.15 * rest < tolerance;
-      if (done || k + 1 == most_passes) {
-        if (k > 0)
-          for (std::size_t i = 0; i < values; ++i) total_.fields[i] += static_cast<float>(beyond[i % columns_]) * step.fields[i];
-        if (k > 0)
-          for (std::size_t i = 0; i < ground; ++i) total_.ground[i] += static_cast<float>(beyond[i % columns_]) * step.ground[i];
-        if (!done) report_.status = SolveStatus::not_converged;
-        break;
+      kept = std::max(kept, step.size());
+      for (std::size_t k = 0; k + 1 < step.size(); ++k) add(step[k], weights, k);
+      if (step.size() == 1 && done) {  // the residual itself is the last correction
+        for (auto& w : weights) w = Eigen::VectorXd::Ones(1);
+        add(step[0], weights, 0);
       }
-      before = now;
     }
+    if (!done) report_.status = SolveStatus::not_converged;
+    report_.memory.emplace_back("fields", (kept + 1) * bytes);
     report_.counts.emplace_back("sweeps", sweeps_);
+  }
+
+  double relative(const std::vector<double>& squared, const std::vector<double>& scale) const {
+    double worst = 0;
+    for (std::size_t c = 0; c < columns_; ++c)
+      if (scale[c] > 0) worst = std::max(worst, std::sqrt(squared[c] / scale[c]));
+    return worst;
+  }
+
+  void say_residual(std::uint32_t passes, double residual, const Stopwatch& watch) {
+    report_.convergence.push_back({0, passes - 1, residual, links_, watch.seconds()});
+    progress_.line(fmt::format("pass {}: residual {:.1e}, {:.1f} s", passes, residual, watch.seconds()));
+  }
+
+  /// Least |r - sum_k c_k (d_k - d_{k+1})|^2 over c, from the scalar products of d_0 = r, d_1, ..., d_n.
+  static double least_residual(const Eigen::MatrixXd& gram, Eigen::VectorXd& c) {
+    const auto n = gram.rows() - 1;
+    Eigen::MatrixXd normal(n, n);
+    Eigen::VectorXd right(n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      right(i) = gram(0, i) - gram(0, i + 1);
+      for (Eigen::Index j = 0; j < n; ++j) normal(i, j) = gram(i, j) - gram(i + 1, j) - gram(i, j + 1) + gram(i + 1, j + 1);
+    }
+    c = normal.completeOrthogonalDecomposition().solve(right);
+    return std::max(0.0, gram(0, 0) - 2.0 * c.dot(right) + c.dot(normal * c));
+  }
+
+  void add(const Light& step, const std::vector<Eigen::VectorXd>& weights, std::size_t k) {
+    std::vector<float> w(columns_);
+    for (std::size_t c = 0; c < columns_; ++c)
+      w[c] = static_cast<std::size_t>(weights[c].size()) > k ? static_cast<float>(weights[c](k)) : 0.0f;
+    for (std::size_t i = 0; i < total_.fields.size(); ++i) total_.fields[i] += w[i % columns_] * step.fields[i];
+    for (std::size_t i = 0; i < total_.ground.size(); ++i) total_.ground[i] += w[i % columns_] * step.ground[i];
   }
 
   // ---- opening
@@ -590,16 +658,15 @@ class InstantiationSolver {
         if (fine_of != batches[begin].original) {
           fine.reset();
           fine_of = batches[begin].original;
-          fine = std::make_unique<LineOperator>(originals_[fine_of].elements, settings_.density.fine, mix(settings_.seed, fine_stream, fine_of),
+          fine = std::make_unique<LineOperator>(originals_[fine_of].elements, density_.fine, mix(settings_.seed, fine_stream, fine_of),
                                                 progress_);
           if (fine->bytes() > fine_bytes_) fine_bytes_ = fine->bytes();
         }
         std::vector<std::vector<Balance>> partial(end - begin);
         tbb::parallel_for(begin, end, [&](std::size_t q) {
           if (progress_.cancelled()) return;
-          with_width(batches[q].width, [&](auto constant) {
-            open<decltype(constant)::value>(batches[q], *fine, rows, window.front(), partial[q - begin]);
-          });
+          with_width(batches[q].width,
+                     [&](auto constant) { open<decltype(constant)::value>(batches[q], *fine, rows, window.front(), partial[q - begin]); });
         });
         progress_.check();
         for (std::size_t q = begin; q < end; ++q) add_balance(batches[q], partial[q - begin]);
@@ -647,7 +714,8 @@ class InstantiationSolver {
     incoming<width>(b, *original.coarse, stored_ends(b), &total_, true, field);
     add_outside<width>(*original.coarse, field, source);
     add_sun<width>(b, source);
-    solve_inside<width>(*original.coarse, e.material, optics_of<width>(b), source, static_cast<float>(settings_.density.inner_tolerance), most_sweeps, radiosity);
+    solve_inside<width>(*original.coarse, e.material, optics_of<width>(b), source, static_cast<float>(density_.inner_tolerance),
+                        most_sweeps, radiosity);
 
     std::vector<std::vector<RayEnd>> ends(b.members.size(), std::vector<RayEnd>(fine.points.size()));
     std::vector<const RayEnd*> pointers;
@@ -664,8 +732,7 @@ class InstantiationSolver {
     for (std::size_t i = 0; i < e.size(); ++i) {
       if (fine.lines[i] == 0) continue;
       const float share = 1.0f / static_cast<float>(fine.lines[i]);
-      for (std::size_t side = 2 * i; side < 2 * i + 2; ++side)
-        add_row<width>(fine.inside, side, share, radiosity.data(), scattered[side]);
+      for (std::size_t side = 2 * i; side < 2 * i + 2; ++side) add_row<width>(fine.inside, side, share, radiosity.data(), scattered[side]);
     }
     balance.assign(b.columns, Balance{});
     escaped<width>(b, fine, pointers, radiosity, balance);
@@ -710,8 +777,8 @@ class InstantiationSolver {
     for (std::size_t t = 0; t < s.size(); ++t) {
       if (s.split[t] == 0) continue;
       const std::uint32_t facet = e.order[t];
-      const auto part = static_cast<std::size_t>(
-          std::upper_bound(original.facet_of_part.begin(), original.facet_of_part.end(), facet) - original.facet_of_part.begin() - 1);
+      const auto part = static_cast<std::size_t>(std::upper_bound(original.facet_of_part.begin(), original.facet_of_part.end(), facet) -
+                                                 original.facet_of_part.begin() - 1);
       Rows& out = rows[first_row + part];
       const std::size_t i = facet - original.facet_of_part[part];
       const std::uint32_t begin = s.first_cell[t], end = s.first_cell[t + 1];
@@ -734,7 +801,8 @@ class InstantiationSolver {
             const Vec3 d = maps_[m].direction_back(lights_.suns[sun]->direction);
             const double cosine = s.normal[0][t] * d.x + s.normal[1][t] * d.y + s.normal[2][t] * d.z;
             if ((cosine > 0) == (side == 0)) {
-              for (auto cell = begin; cell < end; ++cell) lit += share * static_cast<float>(lit_[sun].lit[lit_[sun].first[m] + cell]) / 255.0f;
+              for (auto cell = begin; cell < end; ++cell)
+                lit += share * static_cast<float>(lit_[sun].lit[lit_[sun].first[m] + cell]) / 255.0f;
               direct += lit * static_cast<float>(std::fabs(cosine)) * sun_strength;
             }
             if (band == 0) out.sunlit[(state * out.count + i) * 2 + side] = lit;
@@ -776,7 +844,8 @@ class InstantiationSolver {
           const double area = ground_.area[f];
           balance.incident += area * ground_direct(i, c);
           balance.ground +=
-              area * value * (1.0 - (side == 0 ? optics.reflectance_front[band] : optics.reflectance_back[band]) - optics.transmittance[band]);
+              area * value *
+              (1.0 - (side == 0 ? optics.reflectance_front[band] : optics.reflectance_back[band]) - optics.transmittance[band]);
           balance.escaped += area * b[i * columns_ + c] * ground_.sky_seen[i];
           if (const auto sun = lights_.sun_of_state[state]; sun != LightSources::none && band == 0)
             sunlit[(state * n + f) * 2 + side] = ground_.sunlit[sun][i];
@@ -792,6 +861,7 @@ class InstantiationSolver {
   Progress& progress_;
   const std::size_t states_, bands_, columns_;
   const LightSources lights_;
+  const InstantiationDensity density_;
   Originals found_;
   std::vector<OriginalLight> originals_;
   std::vector<Similarity> maps_;
@@ -813,9 +883,9 @@ class InstantiationSolver {
 InstantiationDensity instantiation_density(Quality quality) {
   switch (quality) {
     case Quality::draft:
-      return {{32, 1.5, 6, 1}, {64, 3.0, 6, 1}, 2.0, 2, 200.0, 32, 5e-3, 2e-3};
+      return {{32, 1.5, 6, 1}, {64, 3.0, 6, 1}, 2.0, 2, 200.0, 32, 5e-3, 3e-3};
     case Quality::standard:
-      return {{48, 2.0, 8, 1}, {128, 5.0, 8, 2}, 2.0, 4, 1000.0, 64, 1e-3, 2e-4};
+      return {{48, 2.0, 8, 1}, {128, 5.0, 8, 2}, 2.0, 4, 1000.0, 64, 2e-3, 1e-3};
     case Quality::fine:
       return {{96, 4.0, 8, 2}, {256, 8.0, 8, 2}, 4.0, 8, 4000.0, 128, 3e-4, 5e-5};
   }

@@ -33,8 +33,7 @@ RayEnd Surroundings::end_of(const CopyHit& hit, const Vec3& d) const {
   const auto& map = maps_[hit.index];
   const auto& original = originals_[scene_.copies[hit.index].surface];
   end.target = hit.index;
-  end.field =
-      original.coarse->field_at(map.point_back(hit.point - hit.image) - original.elements.surface.origin, map.direction_back(-d));
+  end.field = original.coarse->field_at(map.point_back(hit.point - hit.image) - original.elements.surface.origin, map.direction_back(-d));
   return end;
 }
 

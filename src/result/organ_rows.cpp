@@ -121,14 +121,14 @@ void OrganRows::keep_totals() {
 }
 
 void OrganRows::finish() {
-  for (auto* dataset : {&name_, &type_, &plant_, &placement_, &structure_, &area_rows_, &irradiance_rows_, &absorbed_rows_, &sunlit_rows_,
-                        &variance_rows_})
+  for (auto* dataset :
+       {&name_, &type_, &plant_, &placement_, &structure_, &area_rows_, &irradiance_rows_, &absorbed_rows_, &sunlit_rows_, &variance_rows_})
     if (!dataset->empty()) dataset->front().finish();
 }
 
 void OrganRows::close() {
-  for (auto* dataset : {&name_, &type_, &plant_, &placement_, &structure_, &area_rows_, &irradiance_rows_, &absorbed_rows_, &sunlit_rows_,
-                        &variance_rows_})
+  for (auto* dataset :
+       {&name_, &type_, &plant_, &placement_, &structure_, &area_rows_, &irradiance_rows_, &absorbed_rows_, &sunlit_rows_, &variance_rows_})
     dataset->clear();
   group_.close();
   variance_group_.close();

@@ -25,7 +25,9 @@ class OrganRows {
   void add_irradiance(std::size_t s, std::size_t organ, std::size_t side, std::size_t b, double power) {
     irradiance_[((s * count_ + organ) * 2 + side) * bands_ + b] += power;
   }
-  void add_absorbed(std::size_t s, std::size_t organ, std::size_t b, double power) { absorbed_[(s * count_ + organ) * bands_ + b] += power; }
+  void add_absorbed(std::size_t s, std::size_t organ, std::size_t b, double power) {
+    absorbed_[(s * count_ + organ) * bands_ + b] += power;
+  }
   void add_sunlit(std::size_t s, std::size_t organ, std::size_t side, double area) { sunlit_[(s * count_ + organ) * 2 + side] += area; }
   void add_variance(std::size_t s, std::size_t organ, std::size_t b, double variance);
   /// Writes the organs of the copy.

@@ -47,7 +47,7 @@ std::vector<Broken> broken_scenes() {
       {"missing file", scene(good_leaf, good_sun, "laef.obj"), "laef.obj"},
       {"zero sun vector", scene(good_leaf, "direction = [0, 0, 0]\nirradiance = { PAR = 400.0, NIR = 400.0 }"), "scene.toml:3"},
       {"broken TOML", scene() + "[sky\n", "scene.toml:"},
-      {"a method that does not exist", scene(good_leaf, good_sun, "leaf.obj", "[solve]\nmethod = \"instantiation\"\n"),
+      {"a method that does not exist", scene(good_leaf, good_sun, "leaf.obj", "[solve]\nmethod = \"radiance\"\n"),
        "clustering, flat, direct, reference"},
       {"NaN vertex", scene(), "leaf.obj:2", "leaf.obj", "v 0 0 0\nv nan 0 0\nv 1 1 0\nf 1 2 3\n"},
       {"index out of range", scene(), "leaf.obj:4", "leaf.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 9\n"},

@@ -28,9 +28,10 @@ TEST_CASE("a wanted error picks the cheapest quality that aims at it", "[cli]") 
 }
 
 TEST_CASE("an unknown method names those there are", "[cli]") {
-  CHECK_THROWS_WITH(choose_method("instantiation", {}, {}, {}),
-                    "method: found 'instantiation'; expected one of clustering, flat, direct, reference");
-  CHECK_THROWS_WITH(choose_method("clusterng", {}, {}, {}),
-                    "method: found 'clusterng'; expected one of clustering, flat, direct, reference (did you mean 'clustering'?)");
+  CHECK_THROWS_WITH(choose_method("radiance", {}, {}, {}),
+                    "method: found 'radiance'; expected one of instantiation, clustering, flat, direct, reference");
+  CHECK_THROWS_WITH(
+      choose_method("clusterng", {}, {}, {}),
+      "method: found 'clusterng'; expected one of instantiation, clustering, flat, direct, reference (did you mean 'clustering'?)");
   CHECK_THROWS_AS(choose_method("clusterng", {}, {}, {}), UsageError);
 }

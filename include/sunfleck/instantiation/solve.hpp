@@ -9,10 +9,10 @@ namespace sunfleck {
 
 /// How finely an original is sampled by global lines.
 struct OperatorDensity {
-  std::uint32_t directions;   ///< over the hemisphere [-]
-  double lines_per_organ;     ///< mean lines that meet an organ, per direction [-]
-  std::uint32_t field_pixels; ///< K: fields of light that enter and leave have K x K pixels a direction [-]
-  std::uint32_t points;       ///< rays per pixel from a copy to what surrounds it [-]
+  std::uint32_t directions;    ///< over the hemisphere [-]
+  double lines_per_organ;      ///< mean lines that meet an organ, per direction [-]
+  std::uint32_t field_pixels;  ///< K: fields of light that enter and leave have K x K pixels a direction [-]
+  std::uint32_t points;        ///< rays per pixel from a copy to what surrounds it [-]
 };
 
 struct InstantiationDensity {

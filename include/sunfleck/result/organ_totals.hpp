@@ -10,10 +10,10 @@ namespace sunfleck {
 /// s states, k organs that were asked for, b bands.
 struct OrganTotals {
   std::size_t states = 0, bands = 0;
-  std::vector<std::uint64_t> organs;  ///< [k] rows of /organs, rising
-  std::vector<double> irradiance;     ///< [s][k][2][b] sum over facets of area x irradiance, front and back [W]
-  std::vector<double> absorbed;       ///< [s][k][b] [W]
-  std::vector<double> area;           ///< [k] one-sided [m^2]
+  std::vector<std::uint64_t> organs;     ///< [k] rows of /organs, rising
+  std::vector<double> irradiance;        ///< [s][k][2][b] sum over facets of area x irradiance, front and back [W]
+  std::vector<double> absorbed;          ///< [s][k][b] [W]
+  std::vector<double> area;              ///< [k] one-sided [m^2]
   std::vector<double> plant_irradiance;  ///< [s][b] front and back, of all organs of plants [W]
   std::vector<double> plant_absorbed;    ///< [s][b] [W]
   double plant_area = 0;                 ///< [m^2]

@@ -50,7 +50,7 @@ class FacetRows {
   }
   bool is_ground(std::uint32_t copy) const { return copy == placed_.copies.size(); }
 
-  Triangle corners(CopyFacet f) const;     ///< world [m]
+  Triangle corners(CopyFacet f) const;  ///< world [m]
   std::uint32_t material(CopyFacet f) const;
   std::uint32_t organ(CopyFacet f) const;  ///< among the organs of the copy
   /// Facets of an organ of a copy, rising.
@@ -64,9 +64,9 @@ class FacetRows {
 
  private:
   struct PlantRows {
-    std::vector<std::uint64_t> shape_first;       ///< [shapes + 1] first facet of each
-    std::vector<std::uint32_t> shape_organ;       ///< [shapes]
-    std::vector<std::uint32_t> organ_structure;   ///< [m] row of Plant::structures
+    std::vector<std::uint64_t> shape_first;      ///< [shapes + 1] first facet of each
+    std::vector<std::uint32_t> shape_organ;      ///< [shapes]
+    std::vector<std::uint32_t> organ_structure;  ///< [m] row of Plant::structures
   };
   std::size_t shape_of(std::uint32_t plant, std::uint64_t facet) const;
 
