@@ -209,7 +209,8 @@ void add_render(CLI::App& verb, RenderOptions& o) {
 }
 
 void add_view(CLI::App& verb, ViewOptions& o) {
-  verb.add_option("RESULT", o.results, "result of solve, .h5; a second one to compare with it")->required()->expected(1, 2)->type_name("");
+  verb.add_option("RESULT", o.result, "result of solve, .h5")->required()->type_name("");
+  verb.add_option("OTHER", o.other, "a second result, to compare with the first")->type_name("");
   verb.add_option("--port", o.port, "port to serve on (default any that is free)")->type_name("N")->check(count_from(1, 65535));
   verb.add_option("--listen", o.listen, "address to serve on instead of this machine's loopback; needs --token")->type_name("ADDRESS");
   verb.add_option("--token", o.token, "what a browser must know to be answered: 16 letters and digits or more, or 'new' for a random one")

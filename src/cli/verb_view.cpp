@@ -9,7 +9,8 @@ namespace sunfleck {
 
 int verb_view(const ViewOptions& options, Progress& progress) {
   ViewerSettings settings;
-  settings.results = options.results;
+  settings.results = {options.result};
+  if (options.other) settings.results.push_back(*options.other);
   settings.listen = options.listen, settings.token = options.token, settings.port = options.port;
   ViewerServer server(settings);
   fmt::print("{}\n", server.url());

@@ -55,7 +55,8 @@ struct RenderOptions {
 int verb_render(const RenderOptions& options, Progress& progress);
 
 struct ViewOptions {
-  std::vector<std::string> results;          ///< one, or two to compare
+  std::string result;
+  std::optional<std::string> other;          ///< to compare with it
   std::optional<std::string> listen, token;  ///< address other than the loopback; what requests must bring
   int port = 0;                              ///< 0 = any that is free
 };

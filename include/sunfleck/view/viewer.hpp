@@ -11,10 +11,10 @@
 namespace sunfleck {
 
 struct ViewerSettings {
-  std::vector<std::string> results;   ///< one file, or two to compare
-  std::optional<std::string> listen;  ///< address to serve on instead of the loopback; needs a token
-  std::optional<std::string> token;   ///< what requests must bring: at least 16 letters, digits, '-' or '_'; "new" makes one
-  int port = 0;                       ///< 0 = any that is free
+  std::vector<std::string> results = {};             ///< one file, or two to compare
+  std::optional<std::string> listen = std::nullopt;  ///< address to serve on instead of the loopback; needs a token
+  std::optional<std::string> token = std::nullopt;   ///< what requests must bring: at least 16 letters, digits, '-' or '_'; "new" makes one
+  int port = 0;                                      ///< 0 = any that is free
 };
 
 /// Serves the page and its pictures over HTTP. Ways in are kept narrow: only the loopback interface, only requests that name a loopback
