@@ -48,6 +48,8 @@ std::vector<Mesh> read_meshes(const DatasetReader& reader) {
     reader.fail(g + "mesh_first_triangle", std::to_string(first_triangle.size()) + " rows", std::to_string(first_vertex.size()));
   std::vector<Mesh> meshes(first_vertex.size() - 1);
   for (std::size_t m = 0; m < meshes.size(); ++m) {
+    meshes[m].vertices.reserve(first_vertex[m + 1] - first_vertex[m]);
+    meshes[m].triangles.reserve(first_triangle[m + 1] - first_triangle[m]);
     for (auto v = first_vertex[m]; v < first_vertex[m + 1]; ++v)
       meshes[m].vertices.emplace_back(vertices[v * 3], vertices[v * 3 + 1], vertices[v * 3 + 2]);
     for (auto t = first_triangle[m]; t < first_triangle[m + 1]; ++t)

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include <tbb/parallel_sort.h>
+
 #include <sunfleck/core/error.hpp>
 #include <sunfleck/core/sampling.hpp>
 
@@ -21,17 +23,21 @@ Rgb paper(const Vec3& direction, bool dark) {
   return dark ? Rgb{0.012f} + 0.01f * up : Rgb{0.90f} + 0.08f * up;
 }
 
+/// Even about zero; 2 % of the plants' area may lie outside, so that a few noisy twigs do not pale the rest.
 ValueScale even_scale(const ShownMap& shown, const ViewerScene& scene) {
   const auto& facets = scene.scene();
   const std::size_t end = facets.plant_facets > 0 ? facets.plant_facets : facets.size();
-  std::vector<double> sizes;
+  std::vector<std::pair<float, float>> sizes;  // of the difference, and the area that has it
+  double area = 0;
   for (std::size_t f = 0; f < end; ++f)
     if (facets.area[f] > 0)
-      for (const bool front : {true, false}) sizes.push_back(std::fabs(shown.value(f, front)));
-  if (sizes.empty()) return {-1, 1, false};
-  const auto at = sizes.begin() + static_cast<std::ptrdiff_t>(static_cast<double>(sizes.size() - 1) * 0.99);
-  std::nth_element(sizes.begin(), at, sizes.end());
-  const double half = *at > 0 ? *at : *std::max_element(sizes.begin(), sizes.end());
+      for (const bool front : {true, false}) sizes.emplace_back(std::fabs(shown.value(f, front)), facets.area[f]), area += facets.area[f];
+  tbb::parallel_sort(sizes.begin(), sizes.end());
+  double seen = 0, half = 0;
+  for (const auto& [size, weight] : sizes) {
+    if (half > 0 && seen > 0.98 * area) break;
+    half = size, seen += weight;
+  }
   return half > 0 && std::isfinite(half) ? ValueScale{-half, half, false} : ValueScale{-1, 1, false};
 }
 

@@ -7,6 +7,7 @@ export class OrbitCamera {
   constructor(start) {
     this.home = { fov: 35, azimuth: 150, elevation: 25, distance: 1, target: [0, 0, 0], ...start };
     this.orthographic = false;
+    this.fit = 1;
     this.reset();
   }
   reset() {
@@ -19,8 +20,10 @@ export class OrbitCamera {
     const up = [out[1] * right[2] - out[2] * right[1], out[2] * right[0] - out[0] * right[2], out[0] * right[1] - out[1] * right[0]];
     return { out, right, up };
   }
+  /// Steps back where the picture is narrow, so that what is framed stays inside.
+  fitTo(aspect) { this.fit = Math.max(1, 1.25 / aspect); }
   /// Height of the picture at the target.
-  span() { return 2 * this.distance * Math.tan(0.5 * this.fov * radians); }
+  span() { return 2 * this.distance * this.fit * Math.tan(0.5 * this.fov * radians); }
   turn(degreesAround, degreesUp) {
     this.azimuth = (((this.azimuth + degreesAround) % 360) + 360) % 360;
     this.elevation = Math.min(89.9, Math.max(-89.9, this.elevation + degreesUp));
@@ -50,6 +53,6 @@ export class OrbitCamera {
     this.distance = Math.min(this.home.distance, Math.max(size * 4, 1e-4) / (2 * Math.tan(0.5 * this.fov * radians)));
   }
   parameters() {
-    return { azimuth: this.azimuth.toFixed(4), elevation: this.elevation.toFixed(4), distance: this.distance, target: this.target.join(","), fov: this.fov, orthographic: this.orthographic };
+    return { azimuth: this.azimuth.toFixed(4), elevation: this.elevation.toFixed(4), distance: this.distance * this.fit, target: this.target.join(","), fov: this.fov, orthographic: this.orthographic };
   }
 }

@@ -54,6 +54,7 @@ function shownQuantity() {
 function viewOf(pane) {
   const low = element("low").valueAsNumber, high = element("high").valueAsNumber;
   const plane = cut.axis ? cutPlane() : null;
+  camera.fitTo(panes[0].canvas.clientWidth / Math.max(1, panes[0].canvas.clientHeight));
   return {
     ...shownQuantity(),
     result: mode() === "both" ? pane : mainResult(),
@@ -79,8 +80,8 @@ function report(frame, quick, problem) {
     text.textContent = problem;
     return;
   }
-  const kind = frame.draft && !quick ? ", light being prepared" : "";
-  text.textContent = quick ? "" : frame.done ? `${frame.samples.toFixed(0)} rays a pixel` : `${frame.samples < 1 ? "refining" : `${Math.floor(frame.samples)} rays a pixel`}${kind}`;
+  const rays = Math.floor(frame.samples), kind = frame.draft && !quick ? ", light being prepared" : "";
+  text.textContent = quick ? "" : `${rays < 1 ? "refining" : rays === 1 ? "1 ray a pixel" : `${rays} rays a pixel`}${kind}`;
 }
 
 const panes = [0, 1].map((k) => new Pane(element(`pane-${k}`), `pane${k}`, () => viewOf(k), report));
