@@ -250,10 +250,25 @@ void add_generate(CLI::App& verb, GenerateOptions& o) {
 void add_originals(CLI::App& verb, OriginalsOptions& o) {
   verb.add_option("SCENE", o.scene, "scene file, TOML")->required()->type_name("");
   verb.add_option("--policy", o.policy, "policy file for all plants, in place of those that the scene names")->type_name("POLICY.toml");
-  verb.add_flag("--json", o.json, "print JSON instead of a table");
+  verb.add_flag_callback(
+      "--no-tables", [&o] { o.tables = false; }, "classes and members only: nothing is measured");
+  auto* cache = verb.add_option("--cache", o.cache, "folder that keeps tables (default $XDG_CACHE_HOME/sunfleck, else ~/.cache/sunfleck)")
+                    ->type_name("FOLDER");
+  verb.add_flag("--no-cache", o.no_cache, "measure everything, keep nothing")->excludes(cache);
+  verb.add_option("--cache-limit", o.cache_limit_mib, "size of that folder [MiB]; what was not used for longest goes (default 256)")
+      ->type_name("N")
+      ->check(count_from(1, 1e9));
+  verb.add_option("--threads", o.threads, "threads to use; 0 is all cores. The tables have the same bits for any number")
+      ->type_name("N")
+      ->check(count_from(0, 4096));
+  verb.add_flag("--json", o.json, "print JSON instead of tables");
   verb.footer(
-      "Example:\n"
-      "  sunfleck originals stand.toml --policy policies/generic.toml");
+      "Per class and band: mean of the intercepted area sigma over all directions, mean transmittance T, albedo; errors in % of the rms of "
+      "the\n"
+      "phase function: sampling error, fit (what the basis cannot show), energy and reciprocity (before they are enforced).\n\n"
+      "Examples:\n"
+      "  sunfleck originals plants/stand.toml --policy policies/generic.toml --no-tables\n"
+      "  sunfleck originals field.toml --cache /tmp/originals --json");
 }
 
 std::string hint(const std::string& found, const std::vector<std::string>& known) {

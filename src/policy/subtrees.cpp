@@ -6,8 +6,10 @@
 #include <numeric>
 
 #include <sunfleck/core/sampling.hpp>
+#include <sunfleck/policy/classes.hpp>
 
 #include "policy/parameters.hpp"
+#include "policy/similarity.hpp"
 
 namespace sunfleck {
 
@@ -119,6 +121,14 @@ std::vector<Triangle> Subtrees::facets(std::uint32_t structure, std::vector<std:
     }
   });
   return all;
+}
+
+StructureFacets structure_facets(const PlantEntry& entry, std::uint32_t structure) {
+  const Subtrees subtrees(entry);
+  StructureFacets out;
+  out.corners = subtrees.facets(structure, out.optics);
+  out.frame = {nearest_rotation(subtrees.frame(structure).linear), subtrees.frame(structure).translation};
+  return out;
 }
 
 }  // namespace sunfleck

@@ -8,12 +8,12 @@
 
 #include <sunfleck/core/error.hpp>
 #include <sunfleck/core/names.hpp>
+#include <sunfleck/core/sha256.hpp>
 
 #include "result/describe_scene.hpp"
 #include "result/finish_result.hpp"
 #include "result/height_profile.hpp"
 #include "result/organ_rows.hpp"
-#include "result/sha256.hpp"
 
 namespace sunfleck {
 

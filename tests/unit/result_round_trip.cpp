@@ -3,7 +3,7 @@
 #include <sunfleck/core/error.hpp>
 #include <sunfleck/result/result_reader.hpp>
 
-#include "result/sha256.hpp"
+#include <sunfleck/core/sha256.hpp>
 #include "result_scene.hpp"
 
 using namespace sunfleck;

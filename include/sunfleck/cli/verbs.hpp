@@ -78,6 +78,10 @@ int verb_info(const InfoOptions& options, Progress& progress);
 struct OriginalsOptions {
   std::string scene;
   std::optional<std::string> policy;  ///< takes the place of the policies that the scene names
+  std::optional<std::string> cache;   ///< folder; default default_cache_folder()
+  bool no_cache = false, tables = true;
+  std::uint64_t cache_limit_mib = 256;
+  int threads = 0;
   bool json = false;
 };
 int verb_originals(const OriginalsOptions& options, Progress& progress);

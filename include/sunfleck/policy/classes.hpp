@@ -79,4 +79,12 @@ using PolicySet = std::map<std::string, Policy>;
 /// intervals on a text, values on a number, and a type that looks misspelt.
 Classification classify(const Scene& scene, const PolicySet& policies);
 
+/// A structure of a plant with all below it.
+struct StructureFacets {
+  std::vector<Triangle> corners;      ///< [n] plant frame [m], by structure (depth first), then in the order of the file
+  std::vector<std::uint32_t> optics;  ///< [n] row of Scene::optics
+  Affine frame;                       ///< the structure's own rigid frame -> plant frame; its axis runs along +z
+};
+StructureFacets structure_facets(const PlantEntry& entry, std::uint32_t structure);
+
 }  // namespace sunfleck

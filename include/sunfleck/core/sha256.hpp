@@ -1,4 +1,4 @@
-// SHA-256 (FIPS 180-4), to tell which scene a result belongs to.
+// SHA-256 (FIPS 180-4).
 #pragma once
 
 #include <string>

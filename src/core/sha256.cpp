@@ -1,4 +1,4 @@
-#include "result/sha256.hpp"
+#include <sunfleck/core/sha256.hpp>
 
 #include <array>
 #include <bit>

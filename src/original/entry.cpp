@@ -1,0 +1,104 @@
+#include "original/entry.hpp"
+
+#include <cmath>
+#include <cstring>
+#include <type_traits>
+
+#include <sunfleck/core/sha256.hpp>
+
+namespace sunfleck {
+
+namespace {
+
+const std::string format_line = "sunfleck-original 1\n";
+constexpr std::uint32_t byte_order = 0x01020304;
+
+class Bytes {
+ public:
+  template <class T>
+  void put(const T& value) {
+    static_assert(std::is_trivially_copyable_v<T>);
+    text.append(reinterpret_cast<const char*>(&value), sizeof value);
+  }
+  template <class T>
+  void put(const std::vector<T>& values) {
+    put(static_cast<std::uint64_t>(values.size()));
+    for (const auto& v : values) put(v);
+  }
+  std::string text;
+};
+
+class Reader {
+ public:
+  explicit Reader(std::string_view bytes) : bytes_(bytes) {}
+  template <class T>
+  void get(T& value) {
+    if (bytes_.size() < sizeof value) {
+      sound = false;
+      return;
+    }
+    std::memcpy(static_cast<void*>(&value), bytes_.data(), sizeof value);
+    bytes_.remove_prefix(sizeof value);
+  }
+  template <class T>
+  void get(std::vector<T>& values) {
+    std::uint64_t count = 0;
+    get(count);
+    if (!sound || count > bytes_.size() / sizeof(T)) {
+      sound = false;
+      return;
+    }
+    values.resize(count);
+    for (auto& v : values) get(v);
+  }
+  bool done() const { return sound && bytes_.empty(); }
+  bool sound = true;
+
+ private:
+  std::string_view bytes_;
+};
+
+/// The same list for writing and reading.
+template <class Stream, class Tables, class Call>
+void each(Stream&, Tables& t, Call&& call) {
+  call(t.basis), call(t.order), call(t.bands), call(t.sigma), call(t.intercepted), call(t.absorbed), call(t.phase), call(t.errors);
+  call(t.sigma_error), call(t.hull), call(t.area_m2), call(t.facets), call(t.samples), call(t.rays), call(t.reached);
+}
+
+bool finite(const std::vector<double>& values) {
+  for (const double v : values)
+    if (!std::isfinite(v)) return false;
+  return true;
+}
+
+}  // namespace
+
+std::string to_entry(const OriginalTables& tables, const std::string& key) {
+  Bytes bytes;
+  bytes.put(byte_order);
+  each(bytes, tables, [&](const auto& value) { bytes.put(value); });
+  return format_line + key + "\n" + sha256_hex(bytes.text) + "\n" + bytes.text;
+}
+
+std::optional<OriginalTables> from_entry(std::string_view bytes, const std::string& key) {
+  const std::string head = format_line + key + "\n";
+  constexpr std::size_t digits = 64;
+  if (bytes.size() < head.size() + digits + 1 || bytes.substr(0, head.size()) != head) return {};
+  bytes.remove_prefix(head.size());
+  const auto sum = bytes.substr(0, digits);
+  bytes.remove_prefix(digits + 1);
+  if (sha256_hex(bytes) != sum) return {};
+  Reader reader(bytes);
+  std::uint32_t order = 0;
+  reader.get(order);
+  OriginalTables t;
+  each(reader, t, [&](auto& value) { reader.get(value); });
+  const std::size_t n = t.size();
+  if (order != byte_order || !reader.done() || t.intercepted.size() != n || t.absorbed.size() != t.bands * n ||
+      t.phase.size() != t.bands * n * n || t.errors.size() != t.bands || t.sigma.size() != 49)
+    return {};
+  if (!finite(t.sigma) || !finite(t.intercepted) || !finite(t.absorbed) || !finite(t.phase)) return {};
+  return t;
+}
+
+}  // namespace sunfleck
