@@ -73,6 +73,7 @@ struct Verbs {
   GenerateOptions generate;
   InfoOptions info;
   OriginalsOptions originals;
+  PolicyOptions policy;
 };
 
 constexpr const char* method_help =
@@ -258,6 +259,11 @@ void add_originals(CLI::App& verb, OriginalsOptions& o) {
   verb.add_option("--cache-limit", o.cache_limit_mib, "size of that folder [MiB]; what was not used for longest goes (default 256)")
       ->type_name("N")
       ->check(count_from(1, 1e9));
+  verb.add_option(
+          "--spread", o.spread,
+          "also measure so many other members of each class of a policy, and say how far their tables are from the representative's")
+      ->type_name("N")
+      ->check(count_from(1, 1e6));
   verb.add_option("--threads", o.threads, "threads to use; 0 is all cores. The tables have the same bits for any number")
       ->type_name("N")
       ->check(count_from(0, 4096));
@@ -269,6 +275,25 @@ void add_originals(CLI::App& verb, OriginalsOptions& o) {
       "Examples:\n"
       "  sunfleck originals plants/stand.toml --policy policies/generic.toml --no-tables\n"
       "  sunfleck originals field.toml --cache /tmp/originals --json");
+}
+
+void add_policy(CLI::App& verb, PolicyOptions& o) {
+  verb.add_option("SCENE", o.scene, "scene file, TOML")->required()->type_name("");
+  verb.add_flag("--suggest", o.suggest,
+                "derive a policy from the differences between the structures' own tables, instead of printing those in use");
+  verb.add_option("--likeness", o.likeness, "wanted rms difference of phase functions within a class, as a fraction (default 0.1)")
+      ->type_name("FRACTION")
+      ->check(number_between(0.001, 10));
+  verb.add_option("--measured", o.measured, "structures of each type that are measured (default 48)")
+      ->type_name("N")
+      ->check(count_from(8, 1e5));
+  verb.add_option("--threads", o.threads, "threads to use; 0 is all cores. The policy is the same for any number")
+      ->type_name("N")
+      ->check(count_from(0, 4096));
+  verb.footer(
+      "Prints policy files in TOML: without --suggest those that the scene names, with all defaults written out.\n\n"
+      "Example:\n"
+      "  sunfleck policy field.toml --suggest > policies/mine.toml");
 }
 
 std::string hint(const std::string& found, const std::vector<std::string>& known) {
@@ -302,6 +327,7 @@ class Program {
     add("view", "an interactive viewer of a result, in the browser", add_view, verbs_.view, verb_view);
     add("info", "what a result, plant, species or scene file holds", add_info, verbs_.info, verb_info);
     add("originals", "which structures share an original, and its tables", add_originals, verbs_.originals, verb_originals);
+    add("policy", "the policies in use, or one derived from the plants themselves", add_policy, verbs_.policy, verb_policy);
     add("generate", "a procedural plant from a species file", add_generate, verbs_.generate, verb_generate);
   }
 

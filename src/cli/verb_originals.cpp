@@ -11,6 +11,7 @@
 #include <sunfleck/format/policy_toml.hpp>
 #include <sunfleck/format/scene_toml.hpp>
 #include <sunfleck/original/originals.hpp>
+#include <sunfleck/original/suggest.hpp>
 
 #include "cli/text_units.hpp"
 
@@ -20,6 +21,7 @@ namespace {
 
 struct Measured {
   OriginalTables tables;
+  std::optional<ClassSpread> spread;
   CacheState state = CacheState::off;
 };
 
@@ -55,6 +57,10 @@ nlohmann::ordered_json json_of(const Scene& scene, const Measured& m) {
   json["sigma_mean_m2"] = sphere_mean(t, &OriginalTables::intercepted_area);
   json["transmittance_mean"] = sphere_mean(t, &OriginalTables::transmittance);
   json["sigma_error"] = t.sigma_error;
+  if (m.spread) {
+    json["spread"] = {{"members", m.spread->members}, {"sigma", m.spread->sigma}, {"noise", m.spread->noise}};
+    for (std::uint32_t b = 0; b < t.bands; ++b) json["spread"]["bands"][scene.bands[b]] = m.spread->phase[b];
+  }
   for (std::uint32_t b = 0; b < t.bands; ++b) {
     const auto& e = t.errors[b];
     json["bands"][scene.bands[b]] = {{"albedo", t.albedo(b)},
@@ -128,6 +134,21 @@ void print_tables(const Scene& scene, const Classification& classification, cons
   }
 }
 
+void print_spread(const Scene& scene, const Classification& classification, const std::vector<Measured>& measured) {
+  if (std::none_of(measured.begin(), measured.end(), [](const Measured& m) { return m.spread.has_value(); })) return;
+  const auto width = name_width(classification);
+  fmt::print("\n{:<{}} {:>8} {:>8}", "spread, % of the member's own", width, "measured", "sigma");
+  for (const auto& band : scene.bands) fmt::print(" {:>8}", "S " + band);
+  fmt::print(" {:>8}\n", "noise");
+  for (std::size_t i = 0; i < measured.size(); ++i) {
+    if (!measured[i].spread) continue;
+    const auto& s = *measured[i].spread;
+    fmt::print("{:<{}} {:>8} {:>8.2f}", classification.classes[i].name, width, s.members, 100 * s.sigma);
+    for (const double p : s.phase) fmt::print(" {:>8.2f}", 100 * p);
+    fmt::print(" {:>8.2f}\n", 100 * s.noise);
+  }
+}
+
 }  // namespace
 
 int verb_originals(const OriginalsOptions& options, Progress& progress) {
@@ -152,6 +173,7 @@ int verb_originals(const OriginalsOptions& options, Progress& progress) {
       one.tables = cache.tables(original_geometry(scene, c), settings, one.state);
       progress.line(fmt::format("{}: {} facets, {} rays, {:.1f} s, cache: {}", c.name, c.facets,
                                 one.state == CacheState::found ? 0 : one.tables.rays, watch.seconds(), name_of(one.state)));
+      if (options.spread > 0 && c.likeness == Likeness::policy) one.spread = class_spread(scene, c, options.spread, 0.01, progress);
       measured.push_back(std::move(one));
     }
   }
@@ -160,6 +182,7 @@ int verb_originals(const OriginalsOptions& options, Progress& progress) {
   } else {
     print_classes(scene, classification);
     print_tables(scene, classification, measured);
+    print_spread(scene, classification, measured);
   }
   return 0;
 }

@@ -4,6 +4,8 @@
 #include <cctype>
 #include <cmath>
 
+#include <sunfleck/policy/classes.hpp>
+
 namespace sunfleck {
 
 namespace {
@@ -65,6 +67,16 @@ ParameterValue parameter_value(const Subtrees& subtrees, std::uint32_t structure
   if (name == "length") return number(extent_along_axis(subtrees, structure), false);
   if (name == "height") return number(m.bounds.empty() ? 0.0 : m.bounds.size().z, false);
   return {};
+}
+
+std::vector<StructureValues> structure_values(const PlantEntry& entry, const std::vector<std::string>& parameters) {
+  const Subtrees subtrees(entry);
+  std::vector<StructureValues> all(entry.plant->structures.size());
+  for (std::uint32_t s = 0; s < all.size(); ++s) {
+    all[s].facets = subtrees.moments(s).facets;
+    for (const auto& name : parameters) all[s].numbers.push_back(parameter_value(subtrees, s, name).number);
+  }
+  return all;
 }
 
 }  // namespace sunfleck

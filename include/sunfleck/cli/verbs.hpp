@@ -80,10 +80,20 @@ struct OriginalsOptions {
   std::optional<std::string> policy;  ///< takes the place of the policies that the scene names
   std::optional<std::string> cache;   ///< folder; default default_cache_folder()
   bool no_cache = false, tables = true;
+  std::uint32_t spread = 0;  ///< members of each class that are compared with its representative
   std::uint64_t cache_limit_mib = 256;
   int threads = 0;
   bool json = false;
 };
 int verb_originals(const OriginalsOptions& options, Progress& progress);
+
+struct PolicyOptions {
+  std::string scene;
+  bool suggest = false;
+  std::optional<double> likeness;
+  std::uint32_t measured = 48;
+  int threads = 0;
+};
+int verb_policy(const PolicyOptions& options, Progress& progress);
 
 }  // namespace sunfleck

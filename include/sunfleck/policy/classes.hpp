@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -86,5 +87,13 @@ struct StructureFacets {
   Affine frame;                       ///< the structure's own rigid frame -> plant frame; its axis runs along +z
 };
 StructureFacets structure_facets(const PlantEntry& entry, std::uint32_t structure);
+
+/// Values of parameters of a structure, where they are numbers.
+struct StructureValues {
+  std::uint64_t facets = 0;                    ///< in and below it
+  std::vector<std::optional<double>> numbers;  ///< in the order asked for
+};
+/// [structures of the plant]
+std::vector<StructureValues> structure_values(const PlantEntry& entry, const std::vector<std::string>& parameters);
 
 }  // namespace sunfleck
