@@ -86,12 +86,10 @@ json describe(const ViewerScenes& scenes) {
              {"low", point(facets.bounds.low)},
              {"high", point(facets.bounds.high)}};
     for (const auto& state : scene->states()) one["states"].push_back(state.name);
-    const OrbitCamera camera = framing_camera(facets, 1.5);
-    one["camera"] = {{"azimuth", camera.azimuth_deg},
-                     {"elevation", camera.elevation_deg},
-                     {"distance", camera.distance},
-                     {"target", point(camera.target)},
-                     {"fov", camera.field_of_view_deg}};
+    const OrbitCamera usual;
+    one["camera"] = {
+        {"azimuth", usual.azimuth_deg},          {"elevation", usual.elevation_deg},         {"distance", scene->framing().by_height},
+        {"by_width", scene->framing().by_width}, {"target", point(scene->framing().target)}, {"fov", usual.field_of_view_deg}};
     out["results"].push_back(std::move(one));
   }
   out["difference"] = scenes.size() == 2 && scenes[0]->scene().size() == scenes[1]->scene().size() &&

@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_invoke.h>
 
 #include <sunfleck/core/error.hpp>
 
@@ -30,6 +31,19 @@ bool kept(const Result& result, const std::string& quantity) {
   for (const char* name : {"absorbed", "irradiance", "sunlit"})
     if (plain == name || plain.starts_with(std::string(name) + "_")) return organs ? result.has(std::string("organs/") + name) : has(name);
   return quantity != "colour" || has("irradiance");
+}
+
+Framing framing_of(const FacetScene& scene) {
+  const auto points = framed_points(scene);
+  Box box;
+  for (const auto& p : points) box.add(p);
+  Framing out;
+  CameraChoice choice;
+  choice.target = out.target = box.centre();
+  const auto distance = [&](double aspect) { return glm::length(Camera(choice, points, aspect).eye() - out.target); };
+  constexpr double narrow = 0.5, wide = 50;
+  out.by_height = distance(wide), out.by_width = narrow * distance(narrow);
+  return out;
 }
 
 std::vector<double> plant_values(const FacetMap& map, const FacetScene& scene) {
@@ -62,7 +76,7 @@ ViewerScene::ViewerScene(const std::string& file) : file_(file) {
       if (kept(*result_, name)) quantities_.push_back(name);
   }
   const std::size_t n = scene_.size(), m = scene_.organs.size();
-  quick_ = std::make_unique<QuickRays>(scene_);
+  tbb::parallel_invoke([&] { quick_ = std::make_unique<QuickRays>(scene_); }, [&] { framing_ = framing_of(scene_); });
   normals_.resize(n);
   tbb::parallel_for(std::size_t{0}, n, [&](std::size_t f) { normals_[f] = front_normal(scene_.corners[f]); });
   organ_first_.assign(m + 1, 0);

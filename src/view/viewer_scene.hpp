@@ -44,6 +44,12 @@ struct ViewerLight {
   std::vector<std::vector<Surface>> surfaces;  ///< [material][organ type]
 };
 
+/// How far the default camera stands from its target [m]: the larger of `by_height` and `by_width` / (width / height of the picture).
+struct Framing {
+  Vec3 target{0.0};
+  double by_height = 1, by_width = 1;
+};
+
 /// Everything of one version of a file. All members may be called from any number of threads; what is read later comes under one lock,
 /// since HDF5 knows one thread only. The file stays open: a file that is replaced by renaming does not disturb it.
 class ViewerScene {
@@ -69,6 +75,8 @@ class ViewerScene {
   float organ_area(std::size_t organ) const { return organ_area_[organ]; }  ///< the file's [m^2]
   const Vec3& normal(std::size_t facet) const { return normals_[facet]; }
 
+  const Framing& framing() const { return framing_; }
+
   /// Nearest facet; `infinite`: a periodic scene repeats. From the exact tree once it is there.
   RayHit first_hit(const Vec3& origin, const Vec3& direction, std::uint32_t start, double range, bool infinite) const;
   bool exact() const { return exact_ready_; }
@@ -92,6 +100,7 @@ class ViewerScene {
   std::vector<std::string> quantities_;
   std::vector<std::uint32_t> organ_first_, organ_facets_;
   std::vector<float> organ_area_;
+  Framing framing_;
   std::unique_ptr<QuickRays> quick_;
   std::unique_ptr<FacetScene> cell_scene_;
   mutable std::unique_ptr<RayScene> rays_, cell_rays_;  ///< written once, before exact_ready_

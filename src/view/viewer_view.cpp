@@ -10,8 +10,6 @@
 #include <sunfleck/core/error.hpp>
 #include <sunfleck/core/names.hpp>
 
-#include "view/picture_frame.hpp"
-
 namespace sunfleck {
 
 namespace {
@@ -191,21 +189,6 @@ Camera camera_of(const OrbitCamera& orbit, double aspect) {
   const Vec3 up = glm::normalize(glm::cross(glm::cross(-out, Vec3{0, 0, 1}), -out));
   const std::array<Vec3, 1> top{orbit.target + half * up};
   return Camera(choice, top, aspect, {.left = 0, .right = 1, .top = 0, .bottom = 1});
-}
-
-OrbitCamera framing_camera(const FacetScene& scene, double aspect) {
-  OrbitCamera orbit;
-  Box box;
-  const std::size_t end = scene.plant_facets > 0 ? scene.plant_facets : scene.size();
-  for (std::size_t f = 0; f < end; ++f)
-    if (scene.area[f] > 0)
-      for (const auto& p : scene.corners[f]) box.add(p);
-  if (box.empty()) box = scene.bounds;
-  CameraChoice choice;
-  choice.target = orbit.target = box.centre();
-  const Camera camera(choice, framed_points(scene), aspect);
-  orbit.distance = glm::length(camera.eye() - orbit.target);
-  return orbit;
 }
 
 std::vector<std::uint8_t> selected_organs(const FacetScene& scene, const std::string& selection) {

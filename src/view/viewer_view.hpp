@@ -75,8 +75,6 @@ std::size_t read_count(const Parameters& parameters, const std::string& name, st
 bool read_flag(const Parameters& parameters, const std::string& name, bool fallback);
 
 Camera camera_of(const OrbitCamera& orbit, double aspect);
-/// The camera that `render` would choose for the whole scene.
-OrbitCamera framing_camera(const FacetScene& scene, double aspect);
 
 /// One flag an organ. Empty text: every organ of the plants. Else parts joined by ';', all of which must hold: "placement:", "plant:",
 /// "type:", "organ:" followed by rows and ranges of rows such as "0-3,7". Throws UsageError.

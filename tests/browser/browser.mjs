@@ -14,9 +14,9 @@ const { chromium } = createRequire(path.join(folder, "package.json"))("playwrigh
 export const shots = path.join(folder, "pictures");
 fs.mkdirSync(shots, { recursive: true });
 
-/// Starts `sunfleck view`; resolves with its address once it is printed.
+/// Starts `sunfleck view` on files of the folder; its address comes once it is printed.
 export function startViewer(files, options = []) {
-  const child = spawn(program, ["view", ...files, ...options], { stdio: ["ignore", "pipe", "pipe"] });
+  const child = spawn(program, ["view", ...files, ...options], { cwd: folder, stdio: ["ignore", "pipe", "pipe"] });
   const ended = new Promise((resolve) => child.once("exit", (code, signal) => resolve(code ?? signal)));
   const url = new Promise((resolve, reject) => {
     let text = "";
@@ -59,11 +59,17 @@ export async function closePage(page) {
 }
 
 /// Waits until the picture shows what was asked for last, at full resolution with a ray a pixel.
-export async function settled(page, pane = 0) {
-  await page.waitForFunction((k) => {
+export async function settled(page, pane = 0, samples = 1) {
+  await page.waitForFunction(([k, wanted]) => {
     const data = document.querySelector(`#pane-${k} canvas`).dataset;
-    return data.done === "1" || Number(data.samples) >= 1;
-  }, pane);
+    return data.done === "1" || Number(data.samples) >= wanted;
+  }, [pane, samples]);
+}
+
+/// A picture of the page to look at; with BROWSER_FINE=1 good enough for the documentation.
+export async function shoot(page, name, panes = [0]) {
+  for (const pane of panes) await settled(page, pane, process.env.BROWSER_FINE === "1" ? 1e9 : 1);
+  await page.screenshot({ path: path.join(shots, name) });
 }
 
 /// Mean colour and spread of the picture: enough to tell a picture from a blank, and one picture from another.

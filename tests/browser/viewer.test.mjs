@@ -3,9 +3,9 @@ import assert from "node:assert/strict";
 import fs from "node:fs";
 import path from "node:path";
 import { after, before, test } from "node:test";
-import { closePage, download, folder, look, openPage, settled, shots, startBrowser, startViewer, text, unlike } from "./browser.mjs";
+import { closePage, download, folder, look, openPage, settled, shoot, shots, startBrowser, startViewer, text, unlike } from "./browser.mjs";
 
-const first = path.join(folder, "first.h5"), second = path.join(folder, "second.h5");
+const first = "first.h5", second = "second.h5";
 let browser, viewer, url;
 
 /// organs.csv as `sunfleck export` wrote it, by organ row.
@@ -35,7 +35,7 @@ test("the picture comes, is refined, and nothing is asked of other machines", as
   assert.match(await page.title(), /first\.h5/);
   assert.match(await text(page, "#files"), /facets, clustering/);
   await page.waitForFunction(() => document.querySelector("#summary").dataset.facets > 0);
-  await page.screenshot({ path: path.join(shots, "start.png") });
+  await shoot(page, "start.png");
   assert.deepEqual([...page.hosts], [new URL(url).host]);
   await closePage(page);
 });
@@ -137,7 +137,7 @@ test("a leaf that is found by name, and picked in the picture, has the numbers o
   const titles = await organ.locator("td[title]").evaluateAll((cells) => cells.map((cell) => Number(cell.title)));
   assert.ok(titles.some((v) => Math.fround(v) === Math.fround(column(wanted, "absorbed_W_PAR"))), "the page shows the number itself");
   await settled(page);
-  await page.screenshot({ path: path.join(shots, "leaf.png") });
+  await shoot(page, "leaf.png");
   await closePage(page);
 });
 
@@ -177,6 +177,7 @@ test("quantity, range, colour map and state change picture and legend", async ()
   await page.getByLabel("To", { exact: true }).fill("40");
   await page.getByLabel("To", { exact: true }).press("Enter");
   await page.waitForFunction(() => document.getElementById("status").innerText.includes("numbers above zero"));
+  await settled(page);
   page.errors = page.errors.filter((error) => !error.includes("400"));
   await closePage(page);
 });
@@ -202,7 +203,7 @@ test("the cut plane is dragged", async () => {
   assert.match(await text(page, "#cut-value"), /m$/);
   await page.waitForTimeout(300);
   await settled(page);
-  await page.screenshot({ path: path.join(shots, "cut.png") });
+  await shoot(page, "cut.png");
   assert.ok(unlike(half, await look(page)) > 0.5, "the picture follows");
   await page.locator("#pane-0 canvas").focus();
   const now = await slider.inputValue();
@@ -235,7 +236,7 @@ test("a selection has its distribution, and both are saved", async () => {
     fs.copyFileSync(path.join(folder, "downloads", png.name), path.join(shots, png.name));
   }
   await settled(page);
-  await page.screenshot({ path: path.join(shots, "selection.png") });
+  await shoot(page, "selection.png");
   const picture = await download(page, () => page.getByRole("button", { name: "Save the picture" }).click());
   assert.equal(picture.name, "sunfleck.png");
   assert.deepEqual([...picture.bytes.subarray(1, 4)], [0x50, 0x4e, 0x47]);
@@ -253,7 +254,7 @@ test("everything can be reached and named without a mouse", async () => {
   await page.keyboard.press("Tab");
   await page.keyboard.press("Tab");
   assert.equal(await page.evaluate(() => document.activeElement.tagName), "CANVAS");
-  await page.screenshot({ path: path.join(shots, "keyboard.png") });
+  await shoot(page, "keyboard.png");
   await page.keyboard.press("n");
   await page.waitForFunction(() => document.getElementById("organ").dataset.organ === "0");
   await page.keyboard.press("n");
@@ -282,7 +283,7 @@ test("light and dark", async () => {
   await settled(dark);
   const corner = (await look(dark)).slice(0, 3);
   assert.ok(Math.max(...corner) < 80, `the paper behind a map is dark: ${corner}`);
-  await dark.screenshot({ path: path.join(shots, "dark.png") });
+  await shoot(dark, "dark.png");
   await dark.getByLabel("Theme").selectOption("light");
   assert.ok((await shade(dark)) > 200);
   await closePage(dark);
@@ -301,7 +302,7 @@ test("two results side by side, and their difference", async () => {
   assert.match(await text(page, "#pane-1 figcaption"), /second\.h5/);
   const left = await look(page, 0);
   assert.ok(unlike(left, await look(page, 1)) > 0.3, "the results differ");
-  await page.screenshot({ path: path.join(shots, "compare.png") });
+  await shoot(page, "compare.png", [0, 1]);
   await page.locator("#pane-1 canvas").focus();
   await page.keyboard.press("ArrowRight");
   await page.waitForTimeout(400);
@@ -313,7 +314,7 @@ test("two results side by side, and their difference", async () => {
   assert.equal(low, -high);
   await page.waitForTimeout(300);
   await settled(page);
-  await page.screenshot({ path: path.join(shots, "difference.png") });
+  await shoot(page, "difference.png");
   await closePage(page);
   pair.child.kill("SIGTERM");
   assert.equal(await pair.ended, 0);
@@ -321,11 +322,11 @@ test("two results side by side, and their difference", async () => {
 
 test("a result that is replaced is noticed and read again", async () => {
   const file = path.join(folder, "changing.h5"), next = path.join(folder, "next.h5");
-  fs.copyFileSync(first, file);
-  const own = startViewer([file]);
+  fs.copyFileSync(path.join(folder, first), file);
+  const own = startViewer(["changing.h5"]);
   const page = await openPage(browser, await own.url);
   assert.ok(await page.locator("#notice").isHidden());
-  fs.copyFileSync(second, next);
+  fs.copyFileSync(path.join(folder, second), next);
   fs.renameSync(next, file);
   await page.locator("#notice").waitFor({ state: "visible" });
   assert.match(await text(page, "#notice"), /changing\.h5 was replaced/);

@@ -11,7 +11,8 @@ export class OrbitCamera {
     this.reset();
   }
   reset() {
-    Object.assign(this, this.home, { target: [...this.home.target] });
+    const { by_width: _, ...start } = this.home;
+    Object.assign(this, start, { target: [...this.home.target] });
   }
   axes() {
     const a = this.azimuth * radians, e = this.elevation * radians;
@@ -21,7 +22,7 @@ export class OrbitCamera {
     return { out, right, up };
   }
   /// Steps back where the picture is narrow, so that what is framed stays inside.
-  fitTo(aspect) { this.fit = Math.max(1, 1.25 / aspect); }
+  fitTo(aspect) { this.fit = Math.max(1, (this.home.by_width ?? 0) / (aspect * this.home.distance)); }
   /// Height of the picture at the target.
   span() { return 2 * this.distance * this.fit * Math.tan(0.5 * this.fov * radians); }
   turn(degreesAround, degreesUp) {

@@ -74,7 +74,7 @@ export function drawProfile(canvas, statistics, theme) {
   const most = Math.max(...area, 1e-30);
   c.fillStyle = theme.pale;
   area.forEach((a, i) => c.fillRect(px(x.low), py(height[i + 1]), ((px(x.high) - px(x.low)) * a) / most, py(height[i]) - py(height[i + 1]) - 1));
-  c.strokeStyle = theme.accent, c.fillStyle = theme.accent, c.lineWidth = 2;
+  c.strokeStyle = theme.accent, c.fillStyle = theme.accent, c.lineWidth = 2, c.lineJoin = "round";
   c.beginPath();
   let open = false;
   shown.forEach((v, i) => {

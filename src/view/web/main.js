@@ -52,7 +52,6 @@ function shownQuantity() {
 
 /// Parameters of a pane's picture.
 function viewOf(pane) {
-  const low = element("low").valueAsNumber, high = element("high").valueAsNumber;
   const plane = cut.axis ? cutPlane() : null;
   camera.fitTo(panes[0].canvas.clientWidth / Math.max(1, panes[0].canvas.clientHeight));
   return {
@@ -60,8 +59,8 @@ function viewOf(pane) {
     result: mode() === "both" ? pane : mainResult(),
     difference: mode() === "difference" && !isColour(),
     map: element("map").value,
-    log: element("log").checked && mode() !== "difference",
-    range: low < high && !isColour() ? `${low},${high}` : shared.range && !isColour() ? shared.range : undefined,
+    log: scale.log,
+    range: isColour() ? undefined : scale.range,
     exposure: element("exposure").value,
     ...camera.parameters(),
     cut: plane ? [...plane.axis.map((v) => v * plane.sign), plane.offset * plane.sign].join(",") : undefined,
@@ -71,8 +70,8 @@ function viewOf(pane) {
   };
 }
 
-/// Side by side, both pictures have one scale: that of the first.
-const shared = { range: undefined };
+/// The scale that the pictures have.
+const scale = { range: undefined, log: false };
 
 function report(frame, quick, problem) {
   const text = element("progress");
@@ -103,19 +102,23 @@ function redraw() {
   });
 }
 
+/// Asks for the scale that the controls want. One that cannot be is said, and the pictures keep the last that could.
 async function showScale() {
-  shared.range = undefined;
+  const low = element("low").valueAsNumber, high = element("high").valueAsNumber, before = { ...scale };
+  scale.log = element("log").checked && mode() !== "difference";
+  scale.range = !isColour() && (Number.isFinite(low) && Number.isFinite(high)) ? `${low},${high}` : undefined;
   try {
-    const view = { ...viewOf(0), width: 64, height: 64 };
-    const answer = await ask("legend", view);
+    const answer = await ask("legend", { ...viewOf(0), width: 64, height: 64 });
     legend.show(answer, element("map").value);
-    if (mode() === "both" && answer.kind === "numbers") shared.range = `${answer.low},${answer.high}`;
-    element("low").placeholder = answer.kind === "numbers" ? short(answer.low) : "automatic";
-    element("high").placeholder = answer.kind === "numbers" ? short(answer.high) : "automatic";
-    element("low").setCustomValidity(""), element("high").setCustomValidity("");
+    // Side by side, both pictures have one scale: that of the first.
+    if (mode() === "both" && answer.kind === "numbers") scale.range = `${answer.low},${answer.high}`;
+    element("low").placeholder = element("high").placeholder = "automatic";
+    if (answer.kind === "numbers") element("low").placeholder = short(answer.low), element("high").placeholder = short(answer.high);
     say("");
   } catch (error) {
+    Object.assign(scale, before);
     say(error.message);
+    return;
   }
   redraw();
 }

@@ -18,6 +18,7 @@ function row(head, ...values) {
 
 const number = (value) => cell("td", short(value), String(value));
 const text = (value) => Object.assign(cell("td", value), { className: "text" });
+const unitText = (unit) => Object.assign(cell("td", unit), { className: "unit" });
 
 export class OrganPanel {
   constructor({ state, result, picked, went }) {
@@ -34,7 +35,7 @@ export class OrganPanel {
     list.replaceChildren(), count.textContent = "";
     if (!wanted.trim()) return;
     const found = await ask("search", { text: wanted.trim(), result: this.result() });
-    count.textContent = found.total === 0 ? "No organ of that name" : found.total > found.organs.length ? `${found.total} organs; the first ${found.organs.length}` : `${found.total} organs`;
+    count.textContent = found.total === 0 ? "No organ of that name" : found.total > found.organs.length ? `${found.total} organs; the first ${found.organs.length}` : found.total === 1 ? "1 organ" : `${found.total} organs`;
     list.replaceChildren(...found.organs.map((organ) => {
       const line = document.createElement("li"), button = cell("button", organ.name);
       button.type = "button";
@@ -77,8 +78,8 @@ export class OrganPanel {
     names.append(cell("caption", o.name), row("Type", text(o.type)), row("Plant", text(`${o.plant}, ${o.placement}`)), row("Area", text(`${short(o.area)} m²`)), row("Facets", text(String(o.facets))));
     names.querySelectorAll("td")[2].title = String(o.area);
     if (o.value !== undefined && o.value !== null) names.append(row(title || "Shown here", text(short(o.value))));
-    this.box.replaceChildren(names, this.numbers("Whole organ", o, [["Absorbed, in all", o.absorbed, (unit) => unit.replace(/ m⁻²/, "")], ["Absorbed, per area", o.absorbed_per_area]]));
-    if (o.facet) this.box.append(this.numbers(`Facet ${o.facet.row}, ${o.side} seen`, { ...o.facet, bands: o.bands, units: o.units }, [["Absorbed, per area", o.facet.absorbed]]));
+    this.box.replaceChildren(names, this.numbers("Whole organ", o, [["Absorbed", o.absorbed, (unit) => unit.replace(/ m⁻²/, "")], ["Absorbed per area", o.absorbed_per_area]]));
+    if (o.facet) this.box.append(this.numbers(`Facet ${o.facet.row}, ${o.side} seen`, { ...o.facet, bands: o.bands, units: o.units }, [["Absorbed per area", o.facet.absorbed]]));
     const button = cell("button", "Go there (F)");
     button.type = "button";
     button.addEventListener("click", () => this.goTo());
@@ -90,7 +91,7 @@ export class OrganPanel {
     table.append(cell("caption", caption));
     head.append(cell("th", ""), ...o.bands.map((band) => Object.assign(cell("td", band), { scope: "col" })), cell("td", "unit"));
     table.append(head);
-    const add = (name, values, unit) => { if (values) table.append(row(name, ...values.map(number), text(unit))); };
+    const add = (name, values, unit) => { if (values) table.append(row(name, ...values.map(number), unitText(unit))); };
     for (const [name, values, change] of rows) add(name, values, (change ?? ((u) => u))(o.units[0]));
     add("Irradiance, front", o.irradiance?.front, o.units[0]);
     add("Irradiance, back", o.irradiance?.back, o.units[0]);
