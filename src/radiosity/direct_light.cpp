@@ -9,6 +9,8 @@
 #include <sunfleck/core/sampling.hpp>
 #include <sunfleck/visibility/projection.hpp>
 
+#include "transport.hpp"
+
 namespace sunfleck {
 
 namespace {
@@ -54,12 +56,50 @@ class Conservation {
   double found_[2] = {0, 0}, given_[2] = {0, 0};
 };
 
+bool is_ground(const FacetScene& facets, const Elements& e, std::size_t cell) {
+  return e.order[e.row_of_cell[cell]] >= facets.plant_facets;
+}
+
+double cell_area(const Elements& e, std::size_t cell) {
+  const auto t = e.row_of_cell[cell];
+  return e.surface.split[t] > 0 ? static_cast<double>(e.surface.cell_area[t]) : 0.0;
+}
+
+/// Sums over lines become means over each cell's lines.
+void normalise(const FacetScene& facets, const Elements& e, const std::vector<float>& all, const std::vector<bool>& unsampled,
+               double area_of_line, std::vector<float>& value) {
+  Conservation conservation;
+  // in a finite scene the lines that meet plants sample their area too: taken by their number, not by their nominal area, plates that see
+  // the whole sky get all of it
+  double per_line[2] = {area_of_line, area_of_line};
+  if (!e.surface.periodic) {
+    double area[2] = {0, 0}, lines[2] = {0, 0};
+    for (std::size_t c = 0; c < all.size(); ++c) {
+      area[is_ground(facets, e, c)] += cell_area(e, c);
+      lines[is_ground(facets, e, c)] += all[c];
+    }
+    for (int g = 0; g < 2; ++g)
+      if (lines[g] > 0.0) per_line[g] = area[g] / lines[g];
+  }
+  for (std::size_t c = 0; c < all.size(); ++c) {
+    if (unsampled[c]) continue;
+    const bool ground = is_ground(facets, e, c);
+    conservation.add(ground, (static_cast<double>(value[2 * c]) + value[2 * c + 1]) * per_line[ground], 0.0);
+    for (int side = 0; side < 2; ++side) value[2 * c + side] /= all[c];
+  }
+  fill_unsampled(e, unsampled, value);
+  for (std::size_t c = 0; c < all.size(); ++c)
+    conservation.add(is_ground(facets, e, c), 0.0, cell_area(e, c) * (static_cast<double>(value[2 * c]) + value[2 * c + 1]));
+  for (std::size_t c = 0; c < all.size(); ++c)
+    for (int side = 0; side < 2; ++side) value[2 * c + side] *= conservation.factor(is_ground(facets, e, c));
+}
+
 class DirectLightSolver {
  public:
   DirectLightSolver(const Scene& scene, const FacetScene& facets, const Elements& elements, const RadiositySettings& settings,
                     Timings& timings, Progress& progress)
       : scene_(scene),
-        plant_facets_(facets.plant_facets),
+        facets_(facets),
         e_(elements),
         s_(elements.surface),
         settings_(settings),
@@ -73,8 +113,10 @@ class DirectLightSolver {
     out_.sky_of_state = std::move(sources.sky_of_state);
     out_.sun_of_state = std::move(sources.sun_of_state);
     Stopwatch sky_watch;
-    if (!skies_.empty()) sky();
-    if (!skies_.empty()) add_seconds(timings_, "sky", sky_watch.seconds());
+    if (!skies_.empty() && (settings_.method == RadiosityMethod::direct || !anything_scatters(facets_))) {
+      sky();
+      add_seconds(timings_, "sky", sky_watch.seconds());
+    }
     Stopwatch sun_watch;
     for (std::size_t i = 0; i < suns_.size(); ++i) {
       progress_.check();
@@ -93,9 +135,7 @@ class DirectLightSolver {
     const double pitch = pitch_for(e_.organ_area, density.sky_lines_per_organ);
     bool below = false;
     for (const auto* sky : skies_) below = below || sky->reaches_below_horizon();
-    std::vector<float> all(cells, 0.0f);
-    out_.sky.assign(skies_.size(), std::vector<float>(2 * cells, 0.0f));
-    out_.sky_seen.assign(2 * cells, 0.0f);
+    SkySums sums(cells, skies_.size());
     constexpr std::uint32_t batch = 8;
     std::vector<VisibleCounts> counts(batch), counts_below(below ? batch : 0);
     std::vector<float> weight(batch);  // a line of this direction stands for so many of area pitch^2
@@ -129,66 +169,24 @@ class DirectLightSolver {
                      dz = static_cast<float>(direction[i].z);
           for (std::size_t c = range.begin(); c < range.end(); ++c) {
             if (counts[i].all[c] == 0.0f) continue;
-            all[c] += weight[i] * counts[i].all[c];
+            sums.all(c) += weight[i] * counts[i].all[c];
             const float visible = weight[i] * counts[i].visible[c];
             const auto t = e_.row_of_cell[c];
             const bool front_up = s_.normal[0][t] * dx + s_.normal[1][t] * dy + s_.normal[2][t] * dz > 0.0f;
             const std::size_t up = 2 * c + (front_up ? 0 : 1);
-            out_.sky_seen[up] += visible;
-            for (std::size_t k = 0; k < skies_.size(); ++k) out_.sky[k][up] += radiance[i * skies_.size() + k] * visible;
+            sums.seen(up) += visible;
+            for (std::size_t k = 0; k < skies_.size(); ++k) sums.seen(up, 1 + k) += radiance[i * skies_.size() + k] * visible;
             if (below) {
               const float visible_below = weight[i] * counts_below[i].visible[c];
-              out_.sky_seen[up ^ 1] += visible_below;
-              for (std::size_t k = 0; k < skies_.size(); ++k) out_.sky[k][up ^ 1] += radiance_below[i * skies_.size() + k] * visible_below;
+              sums.seen(up ^ 1) += visible_below;
+              for (std::size_t k = 0; k < skies_.size(); ++k) sums.seen(up ^ 1, 1 + k) += radiance_below[i * skies_.size() + k] * visible_below;
             }
           }
         }
       });
     }
-    std::vector<bool> unsampled(cells);
-    for (std::size_t c = 0; c < cells; ++c) unsampled[c] = all[c] == 0.0f;
     // a side of area A meets A D / (2 pitch^2) lines
-    const double area_of_line = 2.0 * pitch * pitch / density.sky_directions;
-    normalise(out_.sky_seen, all, unsampled, area_of_line);
-    for (auto& sky : out_.sky) normalise(sky, all, unsampled, area_of_line);
-    for (std::size_t i = 0; i < out_.sky_seen.size(); ++i)
-      if (const float seen = out_.sky_seen[i]; seen > 1.0f) {
-        out_.sky_seen[i] = 1.0f;
-        for (auto& sky : out_.sky) sky[i] /= seen;
-      }
-  }
-
-  /// Sums over lines become means over each cell's lines.
-  void normalise(std::vector<float>& value, const std::vector<float>& all, const std::vector<bool>& unsampled, double area_of_line) {
-    Conservation conservation;
-    // in a finite scene the lines that meet plants sample their area too: taken by their number, not by their nominal area, plates that see
-    // the whole sky get all of it
-    double per_line[2] = {area_of_line, area_of_line};
-    if (!s_.periodic) {
-      double area[2] = {0, 0}, lines[2] = {0, 0};
-      for (std::size_t c = 0; c < all.size(); ++c) {
-        area[is_ground(c)] += cell_area(c);
-        lines[is_ground(c)] += all[c];
-      }
-      for (int g = 0; g < 2; ++g)
-        if (lines[g] > 0.0) per_line[g] = area[g] / lines[g];
-    }
-    for (std::size_t c = 0; c < all.size(); ++c) {
-      if (unsampled[c]) continue;
-      conservation.add(is_ground(c), (static_cast<double>(value[2 * c]) + value[2 * c + 1]) * per_line[is_ground(c)], 0.0);
-      for (int side = 0; side < 2; ++side) value[2 * c + side] /= all[c];
-    }
-    fill_unsampled(e_, unsampled, value);
-    for (std::size_t c = 0; c < all.size(); ++c)
-      conservation.add(is_ground(c), 0.0, cell_area(c) * (static_cast<double>(value[2 * c]) + value[2 * c + 1]));
-    for (std::size_t c = 0; c < all.size(); ++c)
-      for (int side = 0; side < 2; ++side) value[2 * c + side] *= conservation.factor(is_ground(c));
-  }
-
-  bool is_ground(std::size_t cell) const { return e_.order[e_.row_of_cell[cell]] >= plant_facets_; }
-  double cell_area(std::size_t cell) const {
-    const auto t = e_.row_of_cell[cell];
-    return s_.split[t] > 0 ? s_.cell_area[t] : 0.0;
+    sky_from_lines(facets_, e_, sums, 2.0 * pitch * pitch / density.sky_directions, out_);
   }
 
   void sun(const Sun& sun) {
@@ -238,7 +236,7 @@ class DirectLightSolver {
     Conservation conservation;
     double total = 0;
     for (std::size_t c = 0; c < cells; ++c) {
-      conservation.add(is_ground(c), visible[c] * line_area / samples, 0.0);
+      conservation.add(is_ground(facets_, e_, c), visible[c] * line_area / samples, 0.0);
       total += all[c];
       unsampled[c] = all[c] == 0.0f;
       if (all[c] > 0.0f) lit[2 * c + (cosine[e_.row_of_cell[c]] > 0.0f ? 0 : 1)] = visible[c] / all[c];
@@ -255,11 +253,11 @@ class DirectLightSolver {
       }
     out_.fragments += static_cast<std::uint64_t>(total);
     const auto power = [&](std::size_t c) {
-      return cell_area(c) * std::fabs(cosine[e_.row_of_cell[c]]) * (static_cast<double>(lit[2 * c]) + lit[2 * c + 1]);
+      return cell_area(e_, c) * std::fabs(cosine[e_.row_of_cell[c]]) * (static_cast<double>(lit[2 * c]) + lit[2 * c + 1]);
     };
-    for (std::size_t c = 0; c < cells; ++c) conservation.add(is_ground(c), 0.0, power(c));
+    for (std::size_t c = 0; c < cells; ++c) conservation.add(is_ground(facets_, e_, c), 0.0, power(c));
     for (std::size_t c = 0; c < cells; ++c)
-      for (int side = 0; side < 2; ++side) lit[2 * c + side] = std::min(1.0f, lit[2 * c + side] * conservation.factor(is_ground(c)));
+      for (int side = 0; side < 2; ++side) lit[2 * c + side] = std::min(1.0f, lit[2 * c + side] * conservation.factor(is_ground(facets_, e_, c)));
   }
 
   static void clear(VisibleCounts& counts, std::size_t cells) {
@@ -268,7 +266,7 @@ class DirectLightSolver {
   }
 
   const Scene& scene_;
-  const std::size_t plant_facets_;
+  const FacetScene& facets_;
   const Elements& e_;
   const Surface& s_;
   const RadiositySettings& settings_;
@@ -286,6 +284,29 @@ std::size_t DirectLight::bytes() const {
   for (const auto* list : {&sky, &sunlit, &sun_cosine})
     for (const auto& v : *list) total += bytes_of(v);
   return total;
+}
+
+void sky_from_lines(const FacetScene& facets, const Elements& e, const SkySums& sums, double area_of_line, DirectLight& direct) {
+  const std::size_t cells = sums.cells();
+  std::vector<bool> unsampled(cells);
+  std::vector<float> all(cells);
+  for (std::size_t c = 0; c < cells; ++c) {
+    all[c] = sums.all(c);
+    unsampled[c] = all[c] == 0.0f;
+  }
+  const auto mean = [&](std::size_t row) {
+    std::vector<float> value(2 * cells);
+    for (std::size_t i = 0; i < value.size(); ++i) value[i] = sums.seen(i, row);
+    normalise(facets, e, all, unsampled, area_of_line, value);
+    return value;
+  };
+  direct.sky_seen = mean(0);
+  for (std::size_t k = 0; k < sums.skies(); ++k) direct.sky.push_back(mean(1 + k));
+  for (std::size_t i = 0; i < 2 * cells; ++i)
+    if (const float seen = direct.sky_seen[i]; seen > 1.0f) {
+      direct.sky_seen[i] = 1.0f;
+      for (auto& sky : direct.sky) sky[i] /= seen;
+    }
 }
 
 DirectLight direct_light(const Scene& scene, const FacetScene& facets, const Elements& elements, const RadiositySettings& settings,

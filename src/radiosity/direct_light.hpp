@@ -27,6 +27,34 @@ struct DirectLight {
   std::size_t bytes() const;
 };
 
+/// What lines tell of the skies' light, summed over the lines of each cell, each weighted by the area that it stands for over the mean. All
+/// figures of a cell stand together, as lines meet cells in no order.
+class SkySums {
+ public:
+  SkySums() = default;
+  SkySums(std::size_t cells, std::size_t skies) : skies_(skies), stride_(skies > 0 ? 3 + 2 * skies : 1), values_(cells * stride_, 0.0f) {}
+  bool empty() const { return values_.empty(); }
+  std::size_t cells() const { return stride_ > 0 ? values_.size() / stride_ : 0; }
+  std::size_t skies() const { return skies_; }
+  float& all(std::size_t cell) { return values_[cell * stride_]; }  ///< lines
+  float all(std::size_t cell) const { return values_[cell * stride_]; }
+  /// Lines on which a side sees the sky; row 1 + k: the same times pi x the radiance of sky k over its horizontal irradiance.
+  float& seen(std::size_t cell_side, std::size_t row = 0) { return values_[(cell_side / 2) * stride_ + 1 + 2 * row + cell_side % 2]; }
+  float seen(std::size_t cell_side, std::size_t row = 0) const { return values_[(cell_side / 2) * stride_ + 1 + 2 * row + cell_side % 2]; }
+  void add(const SkySums& other) {
+    for (std::size_t i = 0; i < values_.size(); ++i) values_[i] += other.values_[i];
+  }
+  std::size_t bytes() const { return values_.capacity() * sizeof(float); }
+
+ private:
+  std::size_t skies_ = 0, stride_ = 0;
+  std::vector<float> values_;
+};
+
+/// The skies' light on every cell from `sums` over lines; a side of area A meets A / area_of_line of them.
+void sky_from_lines(const FacetScene& facets, const Elements& elements, const SkySums& sums, double area_of_line, DirectLight& direct);
+
+/// The sun; the sky as well for method direct, and where all is black. Else the lines of scattered light bring the sky's, see sky_from_lines().
 DirectLight direct_light(const Scene& scene, const FacetScene& facets, const Elements& elements, const RadiositySettings& settings,
                          Timings& timings, Progress& progress);
 

@@ -52,51 +52,35 @@ std::vector<bool> interior_sides(const Elements& e, double pitch, std::uint64_t 
   return interior;
 }
 
-LineCollector::LineCollector(const Elements& elements, const ClusterTree* tree, double link_error, std::vector<bool> interior, bool sun)
-    : e_(elements),
-      tree_(tree),
-      link_error_(static_cast<float>(link_error)),
-      interior_(std::move(interior)),
-      sun_(sun),
-      met_(interior_.empty() ? 0 : elements.surface.cells()),
-      inside_(met_.size()) {}
+LineCollector::LineCollector(const Elements& elements, const ClusterTree* tree, double link_error, const std::vector<bool>& interior)
+    : e_(elements), tree_(tree), link_error_(static_cast<float>(link_error)) {
+  if (interior.empty()) return;
+  interior_.resize(2 * e_.surface.cells());
+  for (std::size_t i = 0; i < interior_.size(); ++i) interior_[i] = interior[2 * e_.organ_of_row[e_.row_of_cell[i / 2]] + i % 2];
+  inside_ = std::vector<std::atomic<std::uint32_t>>(e_.surface.cells());
+}
 
-void LineCollector::collect(const LineBundle& bundle, DirectionLines& out) {
-  thread_local std::vector<std::uint32_t> side;
+void LineCollector::collect(LineBundle& bundle, DirectionLines& out) {
+  const std::size_t n = bundle.side.size();
+  out.cell_side.swap(bundle.side);
+  out.side.resize(n);
+  out.link.resize(n);
+  out.far.clear();
+  for (std::size_t k = 0; k < n; ++k) out.side[k] = 2 * e_.element_of_cell[out.cell_side[k] >> 1] + (out.cell_side[k] & 1u);
   FarPair far;
   for (std::size_t q = 0; q + 1 < bundle.start.size(); ++q) {
-    const std::uint32_t begin = bundle.start[q], n = bundle.start[q + 1] - begin;
-    if (n == 0) continue;
-    side.resize(n);
-    for (std::uint32_t k = 0; k < n; ++k) {
-      const std::uint32_t cell_side = bundle.side[begin + k];
-      side[k] = 2 * e_.element_of_cell[cell_side >> 1] + (cell_side & 1u);
+    const std::uint32_t begin = bundle.start[q], end = bundle.start[q + 1];
+    if (begin == end) continue;
+    if (!interior_.empty()) mark_enclosed(out.cell_side.data() + begin, end - begin, out.side.data() + begin);
+    out.link[begin] = HitLink::lowest;
+    for (std::uint32_t k = begin + 1; k < end; ++k) {
+      out.link[k] = HitLink::near;
+      if (!tree_) continue;
+      const double distance = (bundle.depth[k] - bundle.depth[k - 1]) * bundle.depth_to_length;
+      if (!cluster_link(out.side[k - 1], out.side[k] ^ 1u, distance, far)) continue;
+      out.link[k] = HitLink::far;
+      out.far.push_back(far);
     }
-    if (!interior_.empty()) mark_enclosed(bundle.side.data() + begin, n, side.data());
-    out.open_down.push_back(side[0] ^ 1u);
-    for (std::uint32_t k = 1; k < n; ++k) {
-      const double distance = (bundle.depth[begin + k] - bundle.depth[begin + k - 1]) * bundle.depth_to_length;
-      if (tree_ && cluster_link(side[k - 1], side[k] ^ 1u, distance, far))
-        out.far.push_back(far);
-      else
-        out.near.push_back({side[k - 1], side[k] ^ 1u});
-    }
-    out.open_up.push_back(side[n - 1]);
-    if (!sun_) continue;
-    // the sun does not shine on enclosed parts: what they would reflect is withheld, and left to the rest of the element
-    const auto reflect = [&](std::uint32_t row, std::uint32_t from, std::uint32_t cell_side) {
-      if (from & enclosed_bit)
-        out.withheld.push_back(cell_side);
-      else
-        out.reflections.push_back({row, cell_side});
-    };
-    for (std::uint32_t k = 1; k < n; ++k) {
-      const std::uint32_t low = side[k - 1], high = side[k] ^ 1u;
-      reflect(low, high, bundle.side[begin + k] ^ 1u);
-      reflect(high, low, bundle.side[begin + k - 1]);
-    }
-    reflect(no_row, side[0] ^ 1u, bundle.side[begin] ^ 1u);
-    reflect(no_row, side[n - 1], bundle.side[begin + n - 1]);
   }
 }
 
@@ -126,27 +110,15 @@ bool LineCollector::cluster_link(std::uint32_t low, std::uint32_t high, double d
   return true;
 }
 
-std::vector<float> LineCollector::enclosed() const {
-  std::vector<float> fraction;
-  for (std::size_t c = 0; c < inside_.size(); ++c)
-    if (inside_[c] > 0) {
-      if (fraction.empty()) fraction.assign(inside_.size(), 0.0f);
-      fraction[c] = static_cast<float>(inside_[c]) / static_cast<float>(met_[c]);
-    }
-  return fraction;
-}
-
 /// A hit is enclosed if one of its sides, not being an interior side itself, faces an interior side.
 void LineCollector::mark_enclosed(const std::uint32_t* hit, std::uint32_t n, std::uint32_t* side) {
-  const auto interior = [&](std::uint32_t cell_side) { return interior_[2 * organ(cell_side) + (cell_side & 1u)]; };
-  for (std::uint32_t k = 0; k < n; ++k) met_[hit[k] >> 1].fetch_add(1, std::memory_order_relaxed);
   const auto enclose = [&](std::uint32_t k) {
     if (side[k] & enclosed_bit) return;
     side[k] |= enclosed_bit;
     inside_[hit[k] >> 1].fetch_add(1, std::memory_order_relaxed);
   };
   for (std::uint32_t k = 1; k < n; ++k) {
-    const bool low = interior(hit[k - 1]), high = interior(hit[k] ^ 1u);
+    const bool low = interior_[hit[k - 1]] != 0, high = interior_[hit[k] ^ 1u] != 0;
     if (low && !high) enclose(k);
     if (high && !low) enclose(k - 1);
   }

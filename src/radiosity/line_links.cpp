@@ -21,13 +21,21 @@ namespace {
 
 constexpr std::uint64_t line_stream = 0x9fb21c651e98df25ULL;
 
+/// What of the skies comes along the lines of a direction, from above and from below, per line of mean area.
+struct LineSky {
+  float weight = 1.0f;  ///< area that a line stands for, relative to the mean
+  std::vector<float> above, below;
+};
+
 /// Collects one half of the links while directions come in, bin by bin.
 class HalfBuilder {
  public:
-  HalfBuilder(const Elements& elements, const ClusterTree* tree, const SunReflection& sun) : e_(elements), tree_(tree), sun_(sun) {
+  HalfBuilder(const Elements& elements, const ClusterTree* tree, const SunReflection& sun, std::size_t skies, bool count_cells)
+      : e_(elements), tree_(tree), sun_(sun), near_(4 * elements.size()) {
     const std::size_t sides = 2 * e_.size();
     open_up_.assign(sides, 0.0f);
     open_down_.assign(sides, 0.0f);
+    if (count_cells) sky_ = SkySums(e_.surface.cells(), skies);
     if (!sun_.exitance.empty()) {
       reflection_.assign(sides * sun_.columns, 0.0f);
       escaped_.assign(sun_.columns, 0.0);
@@ -41,56 +49,25 @@ class HalfBuilder {
   }
 
   /// Directions of one bin that belong to this half, in order.
-  void add_bin(std::uint32_t bin, const std::vector<DirectionLines*>& lines) {
+  void add_bin(std::uint32_t bin, const std::vector<const DirectionLines*>& lines, const std::vector<const LineSky*>& skies) {
     std::vector<FarPair> far;
-    for (auto* d : lines) {
-      for (const auto s : d->open_up) add_open(open_up_, enclosed_up_, s);
-      for (const auto s : d->open_down) add_open(open_down_, enclosed_down_, s);
-      for (const auto& o : d->outside) {
-        const std::uint32_t up = 2 * e_.element_of_cell[o.cell] + (o.front_up ? 0 : 1);
-        open_up_[up] += o.lines;
-        open_down_[up ^ 1u] += o.lines;
-        if (!sun_.exitance.empty())
-          for (std::size_t cell_side = 2 * std::size_t{o.cell}, end = cell_side + 2; cell_side < end; ++cell_side)
-            for (std::size_t c = 0; c < sun_.columns; ++c) escaped_[c] += o.lines * sun_.exitance[cell_side * sun_.columns + c];
-      }
-      for (const auto& r : d->reflections) {
-        const float* from = sun_.exitance.data() + std::size_t{r.cell_side} * sun_.columns;
-        if (r.row == no_row)
-          for (std::size_t c = 0; c < sun_.columns; ++c) escaped_[c] += from[c];
-        else if (r.row & enclosed_bit)
-          enclosed_reflections_.push_back(r);
-        else
-          for (std::size_t c = 0; c < sun_.columns; ++c) reflection_[r.row * sun_.columns + c] += from[c];
-      }
-      d->reflections = {};
-      if (!d->withheld.empty() && withheld_.empty()) withheld_.assign(reflection_.size(), 0.0f);
-      for (const auto cell_side : d->withheld) {
-        const std::size_t row = 2 * std::size_t{e_.element_of_cell[cell_side >> 1]} + (cell_side & 1u);
-        for (std::size_t c = 0; c < sun_.columns; ++c)
-          withheld_[row * sun_.columns + c] += sun_.exitance[std::size_t{cell_side} * sun_.columns + c];
-      }
-      for (const auto& p : d->far) {
-        auto& low = far_.of_side[std::size_t{p.low} * channels + 2 * bin];
-        auto& high = far_.of_side[std::size_t{p.high} * channels + 2 * bin + 1];
-        if (low == 255 || high == 255) {  // a large element: its lines stay links of its own
-          d->near.push_back({p.low, p.high});
-          continue;
-        }
-        ++low;
-        ++high;
-        ++far_.through[std::size_t{tree_->cluster_of_element[p.low >> 1]} * channels + 2 * bin];
-        ++far_.through[std::size_t{tree_->cluster_of_element[p.high >> 1]} * channels + 2 * bin + 1];
-        ++far_.linked[std::size_t{p.low_node} * channels + 2 * bin];
-        ++far_.linked[std::size_t{p.high_node} * channels + 2 * bin + 1];
-        far.push_back(p);
-      }
-      near_.push_back(std::move(d->near));
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+      add_hits(*lines[i]);
+      if (!sky_.empty()) add_sky(*lines[i], *skies[i]);
+      if (sun_.columns == 2)
+        add_reflections<2>(*lines[i]);
+      else if (!sun_.exitance.empty())
+        add_reflections<0>(*lines[i]);
+      add_far(bin, lines[i]->far, far);
     }
     if (!far.empty()) merge_far(bin, far);
   }
 
-  HalfLinks finish(std::size_t sides, const std::vector<std::uint32_t>& enclosed_part) {
+  /// Needs skies or `count_cells`.
+  float lines_of_cell(std::size_t cell) const { return sky_.all(cell); }
+
+  /// `area_of_line` of the lines of this half.
+  HalfLinks finish(std::size_t sides, const std::vector<std::uint32_t>& enclosed_part, double area_of_line) {
     HalfLinks half;
     const auto part_side = [&](std::uint32_t s) { return s & enclosed_bit ? 2 * enclosed_part[(s & ~enclosed_bit) >> 1] + (s & 1u) : s; };
     half.open_up = std::move(open_up_);
@@ -99,25 +76,164 @@ class HalfBuilder {
     half.open_down.resize(sides, 0.0f);
     for (const auto s : enclosed_up_) half.open_up[part_side(s)] += 1.0f;
     for (const auto s : enclosed_down_) half.open_down[part_side(s)] += 1.0f;
+    half.sky = std::move(sky_);
     half.first_reflection = std::move(reflection_);
     half.escaped_reflection = std::move(escaped_);
     half.withheld_reflection = std::move(withheld_);
     if (!half.first_reflection.empty()) half.first_reflection.resize(sides * sun_.columns, 0.0f);
     for (const auto& r : enclosed_reflections_)
       for (std::size_t c = 0; c < sun_.columns; ++c)
-        half.first_reflection[part_side(r.row) * sun_.columns + c] += sun_.exitance[std::size_t{r.cell_side} * sun_.columns + c];
-    half.lines.assign(sides, 0.0f);
-    near_rows(sides, part_side, half);
+        half.first_reflection[part_side(r.low) * sun_.columns + c] += sun_.exitance[std::size_t{r.high} * sun_.columns + c];
+    if (!half.first_reflection.empty() && e_.surface.periodic) conserve_reflection(half, area_of_line);
+    half.lines.resize(sides);
+    for (std::size_t i = 0; i < sides; ++i) half.lines[i] = half.open_up[i] + half.open_down[i];
+    for (const auto& p : enclosed_pairs_) near_.add(part_side(p.low), part_side(p.high));
+    half.near = near_.finish(sides, half.lines);
     if (tree_) far_rows(half);
     return half;
   }
 
  private:
+  /// Lines meet cells in no order that a processor could foresee.
+  static constexpr std::size_t ahead = 16;
+  static void prefetch(const float* where) { __builtin_prefetch(where, 1); }
+
   static void add_open(std::vector<float>& open, std::vector<std::uint32_t>& enclosed, std::uint32_t side) {
     if (side & enclosed_bit)
       enclosed.push_back(side);
     else
       open[side] += 1.0f;
+  }
+
+  void add_hits(const DirectionLines& d) {
+    for (std::size_t k = 0, n = d.side.size(); k < n; ++k) {
+      if (d.link[k] == HitLink::lowest) {
+        add_open(open_down_, enclosed_down_, d.side[k] ^ 1u);
+      } else if (d.link[k] == HitLink::near) {
+        const std::uint32_t low = d.side[k - 1], high = d.side[k] ^ 1u;
+        if ((low | high) & enclosed_bit)
+          enclosed_pairs_.push_back({low, high});
+        else
+          near_.add(low, high);
+      }
+      if (k + 1 == n || d.link[k + 1] == HitLink::lowest) add_open(open_up_, enclosed_up_, d.side[k]);
+    }
+    for (const auto& o : d.outside) {
+      const std::uint32_t up = 2 * e_.element_of_cell[o.cell] + (o.front_up ? 0 : 1);
+      open_up_[up] += o.lines;
+      open_down_[up ^ 1u] += o.lines;
+    }
+  }
+
+  void add_sky(const DirectionLines& d, const LineSky& sky) {
+    const std::size_t n = d.cell_side.size();
+    for (const auto& o : d.outside) sky_.all(o.cell) += sky.weight * o.lines;
+    if (sky_.skies() == 0) {
+      for (std::size_t k = 0; k < n; ++k) sky_.all(d.cell_side[k] >> 1) += sky.weight;
+      return;
+    }
+    const bool from_below = !sky.below.empty();
+    const auto see = [&](std::size_t cell_side, float lines, const std::vector<float>& radiance) {
+      sky_.seen(cell_side) += sky.weight * lines;
+      for (std::size_t i = 0; i < radiance.size(); ++i) sky_.seen(cell_side, 1 + i) += radiance[i] * lines;
+    };
+    for (std::size_t k = 0; k < n; ++k) {
+      prefetch(&sky_.all(d.cell_side[std::min(k + ahead, n - 1)] >> 1));
+      sky_.all(d.cell_side[k] >> 1) += sky.weight;
+      if (from_below && d.link[k] == HitLink::lowest) see(d.cell_side[k] ^ 1u, 1.0f, sky.below);
+      if (k + 1 == n || d.link[k + 1] == HitLink::lowest) see(d.cell_side[k], 1.0f, sky.above);
+    }
+    for (const auto& o : d.outside) {
+      const std::size_t up = 2 * std::size_t{o.cell} + (o.front_up ? 0 : 1);
+      see(up, o.lines, sky.above);
+      if (from_below) see(up ^ 1u, o.lines, sky.below);
+    }
+  }
+
+  /// Each line brings the sun's light, once reflected, from the very cell that it meets. The sun does not shine on enclosed parts: what they
+  /// would reflect is withheld, and left to the rest of the element.
+  template <std::size_t Columns>
+  void add_reflections(const DirectionLines& d) {
+    const std::size_t columns = Columns ? Columns : sun_.columns;
+    const auto add = [&](auto& sum, std::size_t row, std::uint32_t cell_side) {
+      const float* from = sun_.exitance.data() + std::size_t{cell_side} * columns;
+      auto* to = sum.data() + row * columns;
+      for (std::size_t c = 0; c < columns; ++c) to[c] += from[c];
+    };
+    const auto withhold = [&](std::uint32_t side, std::uint32_t cell_side) {
+      if (withheld_.empty()) withheld_.assign(reflection_.size(), 0.0f);
+      add(withheld_, side & ~enclosed_bit, cell_side);
+    };
+    const auto reflect = [&](std::uint32_t row, std::uint32_t from, std::uint32_t cell_side) {
+      if (from & enclosed_bit)
+        withhold(from, cell_side);
+      else if (row & enclosed_bit)
+        enclosed_reflections_.push_back({row, cell_side});
+      else
+        add(reflection_, row, cell_side);
+    };
+    const auto escape = [&](std::uint32_t from, std::uint32_t cell_side) {
+      if (from & enclosed_bit)
+        withhold(from, cell_side);
+      else
+        add(escaped_, 0, cell_side);
+    };
+    for (std::size_t k = 0, n = d.side.size(); k < n; ++k) {
+      const std::size_t soon = std::min(k + ahead, n - 1);
+      prefetch(sun_.exitance.data() + std::size_t{d.cell_side[soon]} * columns);
+      prefetch(reflection_.data() + std::size_t{d.side[soon] & ~enclosed_bit} * columns);
+      const std::uint32_t down = d.side[k] ^ 1u;
+      if (d.link[k] == HitLink::lowest) {
+        escape(down, d.cell_side[k] ^ 1u);
+      } else {
+        reflect(d.side[k - 1], down, d.cell_side[k] ^ 1u);
+        reflect(down, d.side[k - 1], d.cell_side[k - 1]);
+      }
+      if (k + 1 == n || d.link[k + 1] == HitLink::lowest) escape(d.side[k], d.cell_side[k]);
+    }
+    for (const auto& o : d.outside)
+      for (std::size_t cell_side = 2 * std::size_t{o.cell}, end = cell_side + 2; cell_side < end; ++cell_side)
+        for (std::size_t c = 0; c < columns; ++c) escaped_[c] += o.lines * sun_.exitance[cell_side * columns + c];
+  }
+
+  /// Lines share out what the cells reflect, in proportion to how many of them meet a cell; in sum, it is area x exitance. Not in finite
+  /// scenes, where all further light goes by the number of lines too.
+  void conserve_reflection(HalfLinks& half, double area_of_line) const {
+    const auto& s = e_.surface;
+    const std::size_t columns = sun_.columns;
+    std::vector<double> given(columns, 0.0), found = half.escaped_reflection;
+    for (std::size_t cell = 0; cell < s.cells(); ++cell) {
+      const auto t = e_.row_of_cell[cell];
+      if (s.split[t] == 0) continue;
+      for (std::size_t c = 0; c < columns; ++c)
+        given[c] += static_cast<double>(s.cell_area[t]) * (sun_.exitance[2 * cell * columns + c] + sun_.exitance[(2 * cell + 1) * columns + c]);
+    }
+    for (const auto* light : {&half.first_reflection, &half.withheld_reflection})
+      for (std::size_t i = 0; i < light->size(); ++i) found[i % columns] += (*light)[i];
+    std::vector<double> factor(columns, 1.0);
+    for (std::size_t c = 0; c < columns; ++c)
+      if (given[c] > 0.0 && found[c] > 0.0) factor[c] = given[c] / (found[c] * area_of_line);
+    for (auto* light : {&half.first_reflection, &half.withheld_reflection})
+      for (std::size_t i = 0; i < light->size(); ++i) (*light)[i] *= static_cast<float>(factor[i % columns]);
+    for (std::size_t c = 0; c < columns; ++c) half.escaped_reflection[c] *= factor[c];
+  }
+
+  void add_far(std::uint32_t bin, const std::vector<FarPair>& pairs, std::vector<FarPair>& far) {
+    for (const auto& p : pairs) {
+      auto& low = far_.of_side[std::size_t{p.low} * channels + 2 * bin];
+      auto& high = far_.of_side[std::size_t{p.high} * channels + 2 * bin + 1];
+      if (low == 255 || high == 255) {  // a large element: its lines stay links of its own
+        near_.add(p.low, p.high);
+        continue;
+      }
+      ++low;
+      ++high;
+      ++far_.through[std::size_t{tree_->cluster_of_element[p.low >> 1]} * channels + 2 * bin];
+      ++far_.through[std::size_t{tree_->cluster_of_element[p.high >> 1]} * channels + 2 * bin + 1];
+      ++far_.linked[std::size_t{p.low_node} * channels + 2 * bin];
+      ++far_.linked[std::size_t{p.high_node} * channels + 2 * bin + 1];
+      far.push_back(p);
+    }
   }
 
   /// Equal links become one with a count: bucket by receiving node, sort each bucket.
@@ -139,60 +255,6 @@ class HalfBuilder {
       }
       begin = end;
     }
-  }
-
-  template <class PartSide>
-  void near_rows(std::size_t sides, const PartSide& part_side, HalfLinks& half) {
-    std::vector<std::uint32_t> start(sides + 1, 0);
-    for (auto& list : near_)
-      for (auto& p : list) {
-        p = {part_side(p.low), part_side(p.high)};
-        ++start[p.low + 1];
-        ++start[p.high + 1];
-      }
-    for (std::size_t i = 0; i < sides; ++i) start[i + 1] += start[i];
-    std::vector<std::uint32_t> column(start[sides]);
-    std::vector<std::uint32_t> cursor(start.begin(), start.end() - 1);
-    for (auto& list : near_) {
-      for (const auto& p : list) {
-        column[cursor[p.low]++] = p.high;
-        column[cursor[p.high]++] = p.low;
-      }
-      list = {};
-    }
-    auto& near = half.near;
-    constexpr std::uint32_t most = std::numeric_limits<std::uint16_t>::max();
-    // sort each row and merge equal columns in place
-    std::vector<std::uint32_t> distinct(sides);
-    std::vector<std::uint16_t> count(column.size());
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, sides, 256), [&](const auto& range) {
-      for (std::size_t i = range.begin(); i < range.end(); ++i) {
-        std::sort(column.begin() + start[i], column.begin() + start[i + 1]);
-        std::uint32_t out = start[i];
-        for (std::uint32_t k = start[i]; k < start[i + 1]; ++k) {
-          if (out > start[i] && column[out - 1] == column[k] && count[out - 1] < most) {
-            ++count[out - 1];
-          } else {
-            column[out] = column[k];
-            count[out++] = 1;
-          }
-        }
-        distinct[i] = out - start[i];
-        half.lines[i] = static_cast<float>(start[i + 1] - start[i]) + half.open_up[i] + half.open_down[i];
-      }
-    });
-    near.start.assign(sides + 1, 0);
-    for (std::size_t i = 0; i < sides; ++i) {
-      near.start[i + 1] = near.start[i] + distinct[i];
-      std::copy_n(column.begin() + start[i], distinct[i], column.begin() + near.start[i]);
-      std::copy_n(count.begin() + start[i], distinct[i], count.begin() + near.start[i]);
-    }
-    column.resize(near.start[sides]);
-    count.resize(near.start[sides]);
-    column.shrink_to_fit();
-    count.shrink_to_fit();
-    near.column = std::move(column);
-    near.count = std::move(count);
   }
 
   void far_rows(HalfLinks& half) {
@@ -235,27 +297,54 @@ class HalfBuilder {
   const SunReflection& sun_;
   std::vector<float> reflection_, withheld_;
   std::vector<double> escaped_;
-  std::vector<FirstReflection> enclosed_reflections_;
+  SkySums sky_;
+  std::vector<SidePair> enclosed_reflections_;  ///< row, and side of the cell that reflects
   std::vector<float> open_up_, open_down_;
   std::vector<std::uint32_t> enclosed_up_, enclosed_down_;
-  std::vector<std::vector<SidePair>> near_;
+  NearBuilder near_;
+  std::vector<SidePair> enclosed_pairs_;
   FarField far_;
   std::vector<MergedLink> merged_;
   std::vector<std::uint32_t> by_node_, other_;
 };
 
+/// Small scenes get a finer grid, so that a direction is not told by a few lines alone.
+constexpr double fewest_hits = 1000.0;  ///< of plants, per direction
+
+double line_pitch(const Elements& e, const RadiosityDensity& density) {
+  double area = 0;
+  for (std::size_t t = 0; t < e.surface.focus_count; ++t)
+    if (e.surface.split[t] > 0) area += static_cast<double>(e.surface.cell_area[t]) * (e.surface.first_cell[t + 1] - e.surface.first_cell[t]);
+  return std::sqrt(0.5 * std::min(e.element_area / density.lines_per_element, area / fewest_hits));
+}
+
+std::vector<LineSky> skies_along(const std::vector<Projection>& projection, const std::vector<const Sky*>& skies, double mean_line_area) {
+  bool below = false;
+  for (const auto* sky : skies) below = below || sky->reaches_below_horizon();
+  std::vector<LineSky> out(projection.size());
+  for (std::size_t d = 0; d < out.size(); ++d) {
+    out[d].weight = static_cast<float>(projection[d].line_area / mean_line_area);
+    for (const auto* sky : skies) {
+      const auto radiance = [&](const Vec3& w) { return out[d].weight * static_cast<float>(std::numbers::pi * sky->relative_radiance(w)); };
+      out[d].above.push_back(radiance(projection[d].direction));
+      if (below) out[d].below.push_back(radiance(-projection[d].direction));
+    }
+  }
+  return out;
+}
+
 /// Do at least 5 % of the lines between elements run far?
 bool clusters_pay(const std::vector<DirectionLines>& found) {
   std::size_t near = 0, far = 0;
   for (const auto& f : found) {
-    near += f.near.size();
     far += f.far.size();
+    near += static_cast<std::size_t>(std::count(f.link.begin(), f.link.end(), HitLink::near));
   }
   return 20 * far >= near + far;
 }
 
 std::size_t bytes_of_half(const HalfLinks& h) {
-  return bytes_of(h.near.start) + bytes_of(h.near.column) + bytes_of(h.near.count) + bytes_of(h.far.of_side) + bytes_of(h.far.through) +
+  return h.near.bytes() + bytes_of(h.far.of_side) + bytes_of(h.far.through) +
          bytes_of(h.far.linked) + bytes_of(h.far.first_link) + bytes_of(h.far.links) + bytes_of(h.lines) + bytes_of(h.open_up) +
          bytes_of(h.open_down) + bytes_of(h.first_reflection);
 }
@@ -274,7 +363,7 @@ std::uint32_t bin_of(const Vec3& d) {
 
 std::uint64_t LineLinks::link_count() const {
   std::uint64_t n = 0;
-  for (const auto& h : half) n += h.near.column.size() + h.far.links.size();
+  for (const auto& h : half) n += h.near.size() + h.far.links.size();
   return n;
 }
 
@@ -287,85 +376,95 @@ double line_batch(std::size_t elements, const RadiosityDensity& density) {
   return std::clamp(std::floor(4e6 / std::max(1.0, expected)), 2.0, 16.0);
 }
 
-LineLinks line_links(const Elements& e, const ClusterTree* tree, const SunReflection& sun, const RadiositySettings& settings,
-                     Progress& progress) {
+LineLinks line_links(const Elements& e, const ClusterTree* tree, const SunReflection& sun, const std::vector<const Sky*>& skies,
+                     const RadiositySettings& settings, Progress& progress) {
   const std::uint32_t directions = settings.density.directions;
-  const double pitch = std::sqrt(0.5 * e.element_area / settings.density.lines_per_element);
+  const double pitch = line_pitch(e, settings.density);
   LineLinks links;
   std::vector<bool> interior;
   if (settings.method != RadiosityMethod::flat) interior = interior_sides(e, pitch, settings.seed, progress);
-  LineCollector collector(e, tree, settings.density.link_error, std::move(interior), !sun.exitance.empty());
+  LineCollector collector(e, tree, settings.density.link_error, interior);
   std::optional<HalfBuilder> builder[2];
   // bin by bin, so that equal far links meet and are merged early
-  std::vector<Vec3> direction(directions);
+  std::vector<Projection> projection(directions);
   std::vector<std::vector<std::uint32_t>> bins(direction_bins);
   for (std::uint32_t d = 0; d < directions; ++d) {
-    direction[d] = hemisphere_direction(d, directions, mix(settings.seed, line_stream));
-    bins[bin_of(direction[d])].push_back(d);
+    const Vec3 direction = hemisphere_direction(d, directions, mix(settings.seed, line_stream));
+    projection[d] = project_set_member(e.surface, direction, d, pitch, mix(settings.seed, line_stream, 1));
+    bins[bin_of(direction)].push_back(d);
+    // a side of area A meets A D / (2 line area) lines
+    links.area_of_line += 2.0 * projection[d].line_area / (static_cast<double>(directions) * directions);
   }
+  const std::vector<LineSky> line_sky = skies_along(projection, skies, links.area_of_line * directions / 2.0);
   std::uint32_t done = 0;
-  // a batch of directions, mostly of one bin, keeps the threads busy; its fragments wait in memory to be sorted into links
+  // a batch of directions, mostly of one bin, keeps the threads busy; its hits wait in memory to be sorted into links
   std::vector<std::uint32_t> queue;
   for (const auto& bin : bins) queue.insert(queue.end(), bin.begin(), bin.end());
   const auto batch_size = static_cast<std::size_t>(line_batch(e.size(), settings.density));
+  std::vector<DirectionLines> found(std::min(batch_size, queue.size()));
   for (std::size_t first = 0; first < queue.size(); first += batch_size) {
     const std::vector<std::uint32_t> batch(queue.begin() + static_cast<std::ptrdiff_t>(first),
                                            queue.begin() + static_cast<std::ptrdiff_t>(std::min(queue.size(), first + batch_size)));
-    std::vector<DirectionLines> found(batch.size());
-    std::vector<double> line_area(batch.size());
+    found.resize(batch.size());
     tbb::parallel_for(std::size_t{0}, batch.size(), [&](std::size_t i) {
       if (progress.cancelled()) return;
       thread_local LineBundle bundle;
-      const auto d = batch[i];
-      const auto p = project_set_member(e.surface, direction[d], d, pitch, mix(settings.seed, line_stream, 1));
-      line_area[i] = p.line_area;
-      trace_lines(e.surface, p, bundle);
+      trace_lines(e.surface, projection[batch[i]], bundle);
       collector.collect(bundle, found[i]);
-      found[i].outside = outside_focus(e.surface, p);
+      found[i].outside = outside_focus(e.surface, projection[batch[i]]);
     });
     progress.check();
-    // a side of area A meets A D / (2 line area) lines
-    for (const double a : line_area) links.area_of_line += 2.0 * a / (static_cast<double>(directions) * directions);
     if (first == 0) {
       // where hardly a line of the first batch runs far, clusters cost more than they save
       if (tree && !clusters_pay(found)) {
         tree = nullptr;
         collector.forget_clusters();
         for (auto& f : found) {
-          for (const auto& p : f.far) f.near.push_back({p.low, p.high});
+          std::replace(f.link.begin(), f.link.end(), HitLink::far, HitLink::near);
           f.far.clear();
         }
       }
       links.clustered = tree != nullptr;
-      for (auto& b : builder) b.emplace(e, tree, sun);
+      for (auto& b : builder) b.emplace(e, tree, sun, skies.size(), !skies.empty() || !interior.empty());
     }
-    for (const auto& f : found) links.fragments += f.near.size() + f.far.size() + f.open_up.size();
+    for (const auto& f : found) links.fragments += f.side.size();
     const auto add = [&](std::uint32_t h) {
       for (std::size_t i = 0; i < batch.size();) {
-        const auto bin = bin_of(direction[batch[i]]);
-        std::vector<DirectionLines*> mine;
-        for (; i < batch.size() && bin_of(direction[batch[i]]) == bin; ++i)
-          if (batch[i] % 2 == h) mine.push_back(&found[i]);
-        builder[h]->add_bin(bin, mine);
+        const auto bin = bin_of(projection[batch[i]].direction);
+        std::vector<const DirectionLines*> mine;
+        std::vector<const LineSky*> mine_sky;
+        for (; i < batch.size() && bin_of(projection[batch[i]].direction) == bin; ++i)
+          if (batch[i] % 2 == h) {
+            mine.push_back(&found[i]);
+            mine_sky.push_back(&line_sky[batch[i]]);
+          }
+        builder[h]->add_bin(bin, mine, mine_sky);
       }
     };
     tbb::parallel_invoke([&] { add(0); }, [&] { add(1); });
     done += static_cast<std::uint32_t>(batch.size());
     progress.fraction("lines", static_cast<double>(done) / directions);
   }
+  found = {};
   links.whole.resize(e.size());
   std::iota(links.whole.begin(), links.whole.end(), 0u);
-  links.enclosed = collector.enclosed();
-  if (!links.enclosed.empty()) {
+  const auto& inside = collector.inside();
+  if (std::any_of(inside.begin(), inside.end(), [](const auto& lines) { return lines > 0; })) {
+    links.enclosed.assign(inside.size(), 0.0f);
     links.enclosed_part.assign(e.size(), LineLinks::none);
-    for (std::size_t c = 0; c < links.enclosed.size(); ++c) {
+    for (std::size_t c = 0; c < inside.size(); ++c) {
+      if (inside[c] == 0) continue;
+      links.enclosed[c] = std::min(1.0f, static_cast<float>(inside[c]) / (builder[0]->lines_of_cell(c) + builder[1]->lines_of_cell(c)));
       auto& part = links.enclosed_part[e.element_of_cell[c]];
-      if (links.enclosed[c] == 0.0f || part != LineLinks::none) continue;
+      if (part != LineLinks::none) continue;
       part = static_cast<std::uint32_t>(links.whole.size());
       links.whole.push_back(e.element_of_cell[c]);
     }
   }
-  for (std::size_t h = 0; h < 2; ++h) links.half[h] = builder[h]->finish(links.sides(), links.enclosed_part);
+  for (std::size_t h = 0; h < 2; ++h) {
+    links.half[h] = builder[h]->finish(links.sides(), links.enclosed_part, 2.0 * links.area_of_line);
+    builder[h].reset();
+  }
   return links;
 }
 

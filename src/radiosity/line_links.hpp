@@ -6,9 +6,11 @@
 #include <vector>
 
 #include <sunfleck/core/progress.hpp>
+#include <sunfleck/radiosity/elements.hpp>
 
 #include "cluster_tree.hpp"
-#include <sunfleck/radiosity/elements.hpp>
+#include "direct_light.hpp"
+#include "near_links.hpp"
 
 namespace sunfleck {
 
@@ -17,14 +19,6 @@ namespace sunfleck {
 inline constexpr std::uint32_t direction_bins = 24;
 inline constexpr std::uint32_t channels = 2 * direction_bins;
 std::uint32_t bin_of(const Vec3& direction);
-
-/// Near links as counts: F_ij = count_ij / lines_i (Sbert 1993; Szirmay-Kalos & Purgathofer 1998). count is symmetric and
-/// lines_i = sum_j count_ij + far_i + open_up_i + open_down_i, so energy is conserved and reciprocity holds at any density.
-struct NearLinks {
-  std::vector<std::uint32_t> start;   ///< [sides + 1]
-  std::vector<std::uint32_t> column;  ///< [links] never falling within a row
-  std::vector<std::uint16_t> count;   ///< [links]; more lines than it can hold are further links with the same column
-};
 
 /// Lines that run so far that a cluster may stand for its elements at both ends. What a side receives along channel q is the mean of
 /// what its cluster receives there, and it contributes to what its cluster sends back along q: one count serves both.
@@ -47,6 +41,7 @@ struct HalfLinks {
   NearLinks near;
   FarField far;
   std::vector<float> lines, open_up, open_down;  ///< [sides]
+  SkySums sky;                                   ///< of the cells, on the same lines
   /// The sun's light after its first reflection, summed over the lines of each side: [sides][columns] [W m^-2 lines]. Taken cell by
   /// cell, where the elements only know a mean: sunlit parts shine more than shaded ones, and are seen more from outside.
   std::vector<float> first_reflection;
@@ -87,7 +82,8 @@ double line_batch(std::size_t elements, const RadiosityDensity& density);
 /// an estimate of how much the radiosity met, relative to the mean, changes when A sees B from elsewhere within A: the light of dark
 /// things is scattered little, and a look from far spreads over what lies around anyway. No such pair: a link between the elements.
 /// Method flat has no clusters; a scene in which hardly a line runs far makes no use of them.
-LineLinks line_links(const Elements& elements, const ClusterTree* tree, const SunReflection& sun, const RadiositySettings& settings,
-                     Progress& progress);
+/// The lines also tell what of the `skies` each cell sees.
+LineLinks line_links(const Elements& elements, const ClusterTree* tree, const SunReflection& sun, const std::vector<const Sky*>& skies,
+                     const RadiositySettings& settings, Progress& progress);
 
 }  // namespace sunfleck

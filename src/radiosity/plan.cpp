@@ -64,10 +64,12 @@ class Planner {
     const auto& density = settings_.density;
     const std::uint64_t sides = 2 * plan_.cells;
     std::uint64_t values = 0;
-    if (!sources.skies.empty()) {
-      plan_.sky_fragments =
-          whole(projected_area(elements_, nullptr) * density.sky_directions * 2.0 * density.sky_lines_per_organ / elements_.organ_area);
-      values += (sources.skies.size() + 1) * sides;
+    skies_ = sources.skies.size();
+    if (skies_ > 0) {
+      if (settings_.method == RadiosityMethod::direct || !anything_scatters(facets_))
+        plan_.sky_fragments =
+            whole(projected_area(elements_, nullptr) * density.sky_directions * 2.0 * density.sky_lines_per_organ / elements_.organ_area);
+      values += (skies_ + 1) * sides;
     }
     for (const auto* sun : sources.suns) {
       plan_.sun_fragments += whole(projected_area(elements_, &sun->direction) * 2.0 * density.sun_lines_per_organ / elements_.organ_area);
@@ -81,14 +83,15 @@ class Planner {
     RadiositySettings settings = settings_;
     settings.density.directions = directions;
     settings.method = RadiosityMethod::flat;  // no search for enclosed parts
-    const auto links = line_links(elements_, tree, {}, settings, progress_);
+    const auto links = line_links(elements_, tree, {}, {}, settings, progress_);
     Pilot out;
     out.fragments = static_cast<double>(links.fragments);
     out.clustered = links.clustered;
     for (const auto& half : links.half) {
-      out.near += static_cast<double>(half.near.column.size());
+      out.near += static_cast<double>(half.near.size());
       out.far += static_cast<double>(half.far.links.size());
-      for (const float count : half.near.count) out.near_pairs += 0.5 * static_cast<double>(count);
+      for (std::size_t i = 0; i < half.near.rows(); ++i)
+        half.near.for_row(i, [&](std::uint32_t, std::uint32_t lines) { out.near_pairs += 0.5 * lines; });
     }
     return out;
   }
@@ -111,18 +114,18 @@ class Planner {
     const std::uint64_t half =
         4 * sides * word + (tree ? sides * channels + 2 * slots * word + plan_.clusters * word : 0) + (sun_ ? sides * columns_ * word : 0);
     plan_.memory.emplace_back("links", 2 * half +
-                                           whole(near * (sizeof(std::uint32_t) + sizeof(std::uint16_t)) + far * sizeof(FarField::Link)) +
+                                           whole(near * sizeof(std::uint32_t) + far * sizeof(FarField::Link)) +
                                            plan_.elements * word + (tree ? tree->bytes() : 0));
     // 7 fields of the solver, 3 and a basis of the iteration; how far the basis grows, the optics alone do not tell
     constexpr std::uint64_t fields_of_iteration = 7 + 3 + 8;
     plan_.memory.emplace_back("fields",
                               fields_of_iteration * sides * columns_ * word + (4 * sides + (tree ? 2 * slots * (1 + columns_) : 0)) * word);
-    // a pair of sides waits in 8 bytes, and in 12 while its half is sorted; all that a batch of directions meets is kept in full
-    constexpr double bytes_of_pair = 12.0, bytes_of_meeting = 32.0;
+    // a pair of sides waits in 8 bytes; all that a batch of directions meets is kept in full
+    constexpr double bytes_of_pair = 8.0, bytes_of_meeting = 32.0;
     const double in_batch = std::min(directions, line_batch(plan_.elements, settings_.density)) / directions;
     plan_.memory.emplace_back("lines",
                               whole(more.near_pairs * times * bytes_of_pair + more.fragments * times * in_batch * bytes_of_meeting) +
-                                  (sun_ ? 2 * plan_.cells * columns_ * word : 0));
+                                  (sun_ ? 2 * plan_.cells * columns_ * word : 0) + (skies_ > 0 ? 2 * (3 + 2 * skies_) * plan_.cells * word : 0));
   }
 
   const Scene& scene_;
@@ -132,6 +135,7 @@ class Planner {
   const std::size_t columns_;
   const Elements elements_;
   bool sun_ = false;
+  std::size_t skies_ = 0;
   RadiosityPlan plan_;
 };
 

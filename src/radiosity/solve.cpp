@@ -45,12 +45,13 @@ class RadiositySolver {
     report_.memory.emplace_back("elements", elements_.bytes());
     direct_ = direct_light(scene_, facets_, elements_, settings_, report_.timings, progress_);
     report_.counts.emplace_back("direct_fragments", direct_.fragments);
-    report_.memory.emplace_back("direct", direct_.bytes());
     report_.balance.assign(states_, std::vector<Balance>(bands_));
     if (scatter)
       solve_scattering();
-    else if (settings_.method != RadiosityMethod::direct)
-      report_.convergence.push_back({0, 0, 0.0, 0, 0.0});  // all is black: E = E0
+    else {
+      report_.memory.emplace_back("direct", direct_.bytes());
+      if (settings_.method != RadiosityMethod::direct) report_.convergence.push_back({0, 0, 0.0, 0, 0.0});  // all is black: E = E0
+    }
     watch = {};
     write_rows();
     timed("rows", watch);
@@ -77,44 +78,82 @@ class RadiositySolver {
 
   float enclosed(std::size_t cell) const { return enclosed_.empty() ? 0.0f : enclosed_[cell]; }
 
-  /// Per part: its area, and area means over its cells of the sky's irradiance and of the fraction of the hemisphere that is not open
-  /// sky. No direct light reaches enclosed parts.
+  /// Per part: its area, and for each half of the lines the sky's irradiance and the fraction of the hemisphere that is not open sky. Each
+  /// half has its own, as the product of two figures from the same lines would be biased; a side that no line of a half meets takes the area
+  /// means over its cells, which come from both. No direct light reaches enclosed parts.
   void part_sources(const LineLinks& links) {
     const std::size_t sides = links.sides();
-    source_.assign(sides * columns_, 0.0f);
-    part_rest_.assign(sides, 1.0f);
+    for (std::size_t h = 0; h < 2; ++h) {
+      source_[h].assign(sides * columns_, 0.0f);
+      part_rest_[h].assign(sides, 1.0f);
+    }
     part_area_.assign(sides / 2, 0.0f);
-    const auto& s = elements_.surface;
+    mean_rest_.assign(sides, 1.0f);
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, elements_.size(), 256), [&](const auto& range) {
-      std::vector<double> sum(2 * columns_);
       for (std::size_t i = range.begin(); i < range.end(); ++i) {
-        double area = 0, hidden = 0, rest_of[2] = {0, 0};
-        std::fill(sum.begin(), sum.end(), 0.0);
-        for (std::uint32_t k = elements_.first_cell[i]; k < elements_.first_cell[i + 1]; ++k) {
-          const auto c = elements_.cells[k];
-          const auto t = elements_.row_of_cell[c];
-          const double a = s.split[t] > 0 ? s.cell_area[t] : 0.0;
-          if (a == 0.0) continue;
+        double area = 0, hidden = 0;
+        for_cells(i, [&](std::size_t c, double a) {
           area += a;
           hidden += a * enclosed(c);
-          for (std::size_t side = 0; side < 2; ++side) {
-            rest_of[side] += a * (rest(2 * c + side) - enclosed(c));
-            for (std::size_t column = 0; column < columns_; ++column)
-              sum[side * columns_ + column] += a * sky_irradiance(2 * c + side, column / bands_, column % bands_);
-          }
-        }
+        });
         const double open = area - hidden;
-        if (!links.enclosed_part.empty() && links.enclosed_part[i] != LineLinks::none)
-          part_area_[links.enclosed_part[i]] = static_cast<float>(hidden);
+        const std::uint32_t inside = links.enclosed_part.empty() ? LineLinks::none : links.enclosed_part[i];
+        if (inside != LineLinks::none) part_area_[inside] = static_cast<float>(hidden);
         part_area_[i] = static_cast<float>(open);
-        if (open <= 1e-6 * area || area == 0.0) continue;
-        for (std::size_t side = 0; side < 2; ++side) {
-          part_rest_[2 * i + side] = static_cast<float>(rest_of[side] / open);
-          for (std::size_t column = 0; column < columns_; ++column)
-            source_[(2 * i + side) * columns_ + column] = static_cast<float>(sum[side * columns_ + column] / open);
+        if (open <= 1e-6 * area || area == 0.0 || direct_.sky_seen.empty()) continue;
+        for (std::size_t row = 2 * i, end = row + 2; row < end; ++row) {
+          double rest_of = 0;
+          for_cells(i, [&](std::size_t c, double a) { rest_of += a * (rest(2 * c + row % 2) - enclosed(c)); });
+          mean_rest_[row] = static_cast<float>(rest_of / open);
+          for (std::size_t h = 0; h < 2; ++h) {
+            const auto& half = links.half[h];
+            double lines = 0;
+            for (std::uint32_t k = elements_.first_cell[i]; k < elements_.first_cell[i + 1]; ++k) lines += half.sky.all(elements_.cells[k]);
+            if (inside != LineLinks::none && lines > 0)
+              lines *= half.lines[row] / (half.lines[row] + half.lines[2 * std::size_t{inside} + row % 2]);
+            if (lines > 0.5)
+              source_of_lines(half.sky, i, row, lines, part_rest_[h][row], source_[h].data() + row * columns_);
+            else
+              source_of_cells(i, row, open, part_rest_[h][row], source_[h].data() + row * columns_);
+          }
         }
       }
     });
+  }
+
+  template <class F>
+  void for_cells(std::size_t element, const F& f) const {
+    const auto& s = elements_.surface;
+    for (std::uint32_t k = elements_.first_cell[element]; k < elements_.first_cell[element + 1]; ++k) {
+      const auto c = elements_.cells[k];
+      const auto t = elements_.row_of_cell[c];
+      if (s.split[t] > 0) f(c, static_cast<double>(s.cell_area[t]));
+    }
+  }
+
+  void source_of_lines(const SkySums& sums, std::size_t element, std::size_t row, double lines, float& rest_of, float* source) const {
+    double seen = 0;
+    std::vector<double> sky(sums.skies(), 0.0);
+    for (std::uint32_t k = elements_.first_cell[element]; k < elements_.first_cell[element + 1]; ++k) {
+      const std::size_t cell_side = 2 * std::size_t{elements_.cells[k]} + row % 2;
+      seen += sums.seen(cell_side);
+      for (std::size_t j = 0; j < sky.size(); ++j) sky[j] += sums.seen(cell_side, 1 + j);
+    }
+    const double all = std::max(lines, seen);
+    rest_of = static_cast<float>(1.0 - seen / all);
+    for (std::size_t column = 0; column < columns_; ++column)
+      if (const auto k = direct_.sky_of_state[column / bands_]; k != DirectLight::none)
+        source[column] = static_cast<float>(scene_.states[column / bands_].sky->irradiance[column % bands_] * sky[k] / all);
+  }
+
+  void source_of_cells(std::size_t element, std::size_t row, double open, float& rest_of, float* source) const {
+    std::vector<double> sum(columns_, 0.0);
+    for_cells(element, [&](std::size_t c, double a) {
+      for (std::size_t column = 0; column < columns_; ++column)
+        sum[column] += a * sky_irradiance(2 * c + row % 2, column / bands_, column % bands_);
+    });
+    rest_of = mean_rest_[row];
+    for (std::size_t column = 0; column < columns_; ++column) source[column] = static_cast<float>(sum[column] / open);
   }
 
   /// Sunlight after reflection and transmission on each cell.
@@ -155,14 +194,22 @@ class RadiositySolver {
     Stopwatch watch;
     std::optional<ClusterTree> tree;
     if (settings_.method == RadiosityMethod::clustering) tree = make_cluster_tree(facets_, elements_);
-    const LineLinks links = line_links(elements_, tree ? &*tree : nullptr, sun_reflection(), settings_, progress_);
+    LineLinks links =
+        line_links(elements_, tree ? &*tree : nullptr, sun_reflection(), light_sources(scene_.states).skies, settings_, progress_);
     if (!links.clustered) tree.reset();
+    if (links.half[0].sky.skies() > 0) {
+      SkySums sums = links.half[0].sky;
+      sums.add(links.half[1].sky);
+      sky_from_lines(facets_, elements_, sums, links.area_of_line, direct_);
+    }
     enclosed_part_ = links.enclosed_part;
     enclosed_ = links.enclosed;
     // what sees the sky is not enclosed: other lines found the two fractions, and together they must not exceed the hemisphere
     for (std::size_t c = 0; c < enclosed_.size(); ++c) enclosed_[c] = std::min({enclosed_[c], rest(2 * c), rest(2 * c + 1)});
     part_sources(links);
+    for (auto& half : links.half) half.sky = {};
     timed("lines", watch);
+    report_.memory.emplace_back("direct", direct_.bytes());
     const std::size_t sides = links.sides();
     report_.counts.emplace_back("clusters", tree ? tree->size() : 0);
     report_.counts.emplace_back("directions", settings_.density.directions);
@@ -185,7 +232,7 @@ class RadiositySolver {
       for (std::size_t i = 0; i < sides; ++i) {
         if (sky_known) sky_lines[i] = half.open_up[i] + (sky_below ? half.open_down[i] : 0.0f);
         const float left = half.lines[i] - sky_lines[i], open = half.open_up[i] + half.open_down[i] - sky_lines[i];
-        escape[h][i] = 1.0f - part_rest_[i] + (left > 0.0f ? part_rest_[i] * open / left : 0.0f);
+        escape[h][i] = 1.0f - mean_rest_[i] + (left > 0.0f ? mean_rest_[i] * open / left : 0.0f);
       }
       gather.emplace_back(half, tree ? &*tree : nullptr, sky_lines, columns_, cluster_fields);
     }
@@ -197,13 +244,13 @@ class RadiositySolver {
     // the sun's first reflection. E_b is eliminated: the eigenvalues of the pair are +-sqrt of those of F_a R F_b R, so that half as many
     // iterations of the same cost reach the same residual, with fields half as long.
     const std::size_t values = sides * columns_;
-    Field radiosity(values), part_source[2] = {source_, source_};
+    Field radiosity(values);
     std::vector<float> weight(sides);
     for (std::size_t i = 0; i < sides; ++i) weight[i] = part_area_[i / 2];
-    const auto times_rest = [&](Field& field) {
+    const auto times_rest = [&](std::size_t h, Field& field) {
       tbb::parallel_for(tbb::blocked_range<std::size_t>(0, sides, 4096), [&](const auto& range) {
         for (std::size_t i = range.begin(); i < range.end(); ++i)
-          for (std::size_t c = 0; c < columns_; ++c) field[i * columns_ + c] *= part_rest_[i];
+          for (std::size_t c = 0; c < columns_; ++c) field[i * columns_ + c] *= part_rest_[h][i];
       });
     };
     Field gathered(values);
@@ -214,29 +261,30 @@ class RadiositySolver {
       else
         gather[h].gather(returned.data(), gathered.data());
       gather[h].add_first_reflection(1.0f, gathered.data());
-      times_rest(gathered);
-      for (std::size_t i = 0; i < values; ++i) part_source[h][i] += gathered[i];
+      times_rest(h, gathered);
+      for (std::size_t i = 0; i < values; ++i) source_[h][i] += gathered[i];
     }
     const auto half_step = [&](std::size_t h, const Field& from, Field& to) {  // F_h R from
       reflection.apply(from.data(), radiosity.data());
       gather[h].gather(radiosity.data(), to.data());
-      times_rest(to);
+      times_rest(h, to);
     };
-    std::vector<double> scale = norms(part_source[0], weight, columns_);
-    const auto other_norm = norms(part_source[1], weight, columns_);
+    std::vector<double> scale = norms(source_[0], weight, columns_);
+    const auto other_norm = norms(source_[1], weight, columns_);
     for (std::size_t c = 0; c < columns_; ++c) scale[c] = std::hypot(scale[c], other_norm[c]);
-    half_step(0, part_source[1], gathered);
-    for (std::size_t i = 0; i < values; ++i) part_source[0][i] += gathered[i];
+    half_step(0, source_[1], gathered);
+    for (std::size_t i = 0; i < values; ++i) source_[0][i] += gathered[i];
     Field irradiance[2];
     const auto apply = [&](const Field& x, Field& kx) {
       half_step(1, x, gathered);
       half_step(0, gathered, kx);
     };
     const double tolerance = settings_.tolerance > 0 ? settings_.tolerance : settings_.density.tolerance;
-    const auto result = gmres(apply, part_source[0], weight, scale, tolerance, most_iterations, irradiance[0], progress_);
+    const auto result = gmres(apply, source_[0], weight, scale, tolerance, most_iterations, irradiance[0], progress_);
     half_step(1, irradiance[0], gathered);
-    for (std::size_t i = 0; i < values; ++i) part_source[1][i] += gathered[i];
-    irradiance[1] = std::move(part_source[1]);
+    for (std::size_t i = 0; i < values; ++i) source_[1][i] += gathered[i];
+    irradiance[1] = std::move(source_[1]);
+    source_[0] = {};
     for (std::size_t k = 0; k < result.residuals.size(); ++k)
       report_.convergence.push_back({0, static_cast<std::uint32_t>(k), result.residuals[k], links.link_count(), watch.seconds()});
     if (!result.converged) report_.status = SolveStatus::not_converged;
@@ -354,8 +402,8 @@ class RadiositySolver {
   const std::size_t states_, bands_, columns_;
   Elements elements_;
   DirectLight direct_;
-  Field source_, gathered_;
-  std::vector<float> part_rest_, part_area_;
+  Field source_[2], gathered_;  ///< source_: of each half
+  std::vector<float> part_rest_[2], mean_rest_, part_area_;  ///< mean_rest_: area mean over the part's cells, from both halves
   std::vector<std::uint32_t> enclosed_part_;
   std::vector<float> enclosed_;
   SolveReport report_;

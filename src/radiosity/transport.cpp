@@ -75,11 +75,11 @@ void near_rows(const NearLinks& near, const float* b, float* s, std::size_t begi
     float* total = Columns ? sum : to;
     if (!Columns)
       for (std::size_t c = 0; c < n; ++c) total[c] = 0.0f;
-    for (std::uint32_t k = near.start[i]; k < near.start[i + 1]; ++k) {
-      const float* from = b + std::size_t{near.column[k]} * n;
-      const auto count = static_cast<float>(near.count[k]);
+    near.for_row(i, [&](std::uint32_t column, std::uint32_t lines) {
+      const float* from = b + std::size_t{column} * n;
+      const auto count = static_cast<float>(lines);
       for (std::size_t c = 0; c < n; ++c) total[c] += count * from[c];
-    }
+    });
     if (Columns)
       for (std::size_t c = 0; c < n; ++c) to[c] = total[c];
   }

@@ -88,6 +88,7 @@ Problem make_problem(const std::string& file) {
   p.facets = expand(p.scene);
   p.elements = make_elements(p.scene, p.facets, p.settings);
   Timings timings;
+  p.settings.method = RadiosityMethod::direct;  // the sky from projections of its own: the same for lines and rays
   p.direct = direct_light(p.scene, p.facets, p.elements, p.settings, timings, silent());
   p.settings.method = RadiosityMethod::flat;
   const auto& e = p.elements;
@@ -177,24 +178,20 @@ std::array<HalfLinks, 2> ray_links(const Problem& p, const RayScene& rays, std::
     half.lines.assign(sides, static_cast<float>(per_side / 2));
     half.open_up.assign(sides, 0.0f);
     half.open_down.assign(sides, 0.0f);
-    half.near.start.assign(1, 0);
+    NearBuilder near(sides);
     for (std::size_t i = 0; i < sides; ++i) {
       const auto begin = met[h].begin() + static_cast<std::ptrdiff_t>(i * (per_side / 2)), end = begin + per_side / 2;
-      std::sort(begin, end);
       for (auto k = begin; k != end; ++k) {
         if (*k == up)
           half.open_up[i] += 1.0f;
         else if (*k == down)
           half.open_down[i] += 1.0f;
-        else if (k != begin && *k == k[-1])
-          ++half.near.count.back();
-        else {
-          half.near.column.push_back(*k);
-          half.near.count.push_back(1);
-        }
+        else
+          near.add_end(static_cast<std::uint32_t>(i), *k);
       }
-      half.near.start.push_back(static_cast<std::uint32_t>(half.near.column.size()));
     }
+    std::vector<float> lines(sides, 0.0f);  // known already
+    half.near = near.finish(sides, lines);
   });
   return out;
 }
@@ -282,7 +279,7 @@ void row(const Problem& p, const std::string& name, double samples, const Clock&
     const auto error = error_of(x, truth, bands, b);
     errors += fmt::format(" {:.2f} ({:+.2f}) |", error.rmse, error.bias);
   }
-  const std::size_t links = half[0].near.column.size() + half[1].near.column.size();
+  const std::size_t links = half[0].near.size() + half[1].near.size();
   fmt::print("| {} | {:.2f} | {:.2f} | {:.2f} | {:.2f} | {:.1f} | {:.2f} |{}\n", name, 1e-6 * samples, cpu, wall, 1e-6 * samples / cpu,
              1e-6 * static_cast<double>(links), solving.cpu(), errors);
   std::fflush(stdout);
@@ -292,7 +289,7 @@ std::array<HalfLinks, 2> traced(const Problem& p, std::uint32_t directions, std:
   RadiositySettings settings = p.settings;
   settings.density.directions = directions;
   settings.seed = seed;
-  auto links = line_links(p.elements, nullptr, {}, settings, silent());
+  auto links = line_links(p.elements, nullptr, {}, {}, settings, silent());
   samples = 2.0 * static_cast<double>(links.fragments);
   return std::move(links.half);
 }

@@ -120,8 +120,8 @@ TEST_CASE("radiosity: plates under each sky") {
       add(scene, "flat", {square(0)}, 0);
       add(scene, "upright", {Mesh{{{9, 0, 0}, {9, 1, 0}, {9, 1, 1}, {9, 0, 1}}, {{0, 1, 2}, {0, 2, 3}}}}, 0);
       auto settings = settings_of(method);
-      settings.density.sky_directions = 1024;  // four facets do not fill the lines that qualities count per organ
-      settings.density.sky_lines_per_organ = 200;
+      settings.density.directions = 1024;  // four facets do not fill the lines that qualities count per element
+      settings.density.lines_per_element = 200;
       const auto run = solve(scene, settings);
       CAPTURE(name_of(method), name_of(model));
       for (const std::size_t f : {0, 1}) {

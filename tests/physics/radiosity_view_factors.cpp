@@ -55,7 +55,7 @@ Counts count_lines(const std::vector<Mesh>& surfaces, std::uint32_t directions, 
   settings.density.elements_per_organ = 1;
   settings.density.lines_per_element = lines_per_surface;
   const auto elements = make_elements(scene, facets, settings);
-  const auto links = line_links(elements, nullptr, {}, settings, silent());
+  const auto links = line_links(elements, nullptr, {}, {}, settings, silent());
   std::vector<std::size_t> organ_side(links.sides());
   for (std::size_t i = 0; i < organ_side.size(); ++i)
     organ_side[i] = 2 * facets.organ[elements.order[elements.row_of_cell[elements.cells[elements.first_cell[i / 2]]]]] + i % 2;
@@ -65,8 +65,7 @@ Counts count_lines(const std::vector<Mesh>& surfaces, std::uint32_t directions, 
   for (const auto& half : links.half)
     for (std::size_t i = 0; i < organ_side.size(); ++i) {
       if (i % 2 == 0) out.lines[organ_side[i] / 2] += half.lines[i];
-      for (auto k = half.near.start[i]; k < half.near.start[i + 1]; ++k)
-        out.count[organ_side[i]][organ_side[half.near.column[k]]] += half.near.count[k];
+      half.near.for_row(i, [&](std::uint32_t column, std::uint32_t lines) { out.count[organ_side[i]][organ_side[column]] += lines; });
     }
   return out;
 }

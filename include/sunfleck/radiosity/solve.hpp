@@ -18,7 +18,7 @@ struct RadiosityDensity {
   std::uint32_t directions;      ///< global-line directions over the hemisphere [-]
   double lines_per_element;      ///< mean lines that meet an element, per direction [-]
   double elements_per_organ;     ///< elements of an organ of the mean size [-]
-  std::uint32_t sky_directions;  ///< directions for the sky's visibility [-]
+  std::uint32_t sky_directions;  ///< directions for the sky's visibility, method direct alone: else the global lines bring it [-]
   double sky_lines_per_organ;    ///< per direction [-]
   std::uint32_t sun_samples;     ///< points of the sun's disc, each with a grid of its own [-]
   double sun_lines_per_organ;    ///< over all sun samples together [-]

@@ -1,0 +1,105 @@
+#include "near_links.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <sunfleck/core/error.hpp>
+#include <sunfleck/core/memory.hpp>
+
+namespace sunfleck {
+
+namespace {
+
+constexpr int most_column_bits = 28;
+constexpr int most_block_bits = 11;  ///< the lines of a block are sorted within a processor's cache
+constexpr int digit_bits = 11;
+
+/// Sorts by the lowest `bits` bits, digit by digit; `other` is scratch space.
+void radix_sort(std::vector<std::uint32_t>& values, std::vector<std::uint32_t>& other, int bits) {
+  other.resize(values.size());
+  for (int shift = 0; shift < bits; shift += digit_bits) {
+    std::array<std::uint32_t, std::size_t{1} << digit_bits> place{};
+    for (const auto v : values) ++place[v >> shift & ((1u << digit_bits) - 1)];
+    std::uint32_t sum = 0;
+    for (auto& p : place) {
+      const auto n = p;
+      p = sum;
+      sum += n;
+    }
+    for (const auto v : values) other[place[v >> shift & ((1u << digit_bits) - 1)]++] = v;
+    values.swap(other);
+  }
+}
+
+}  // namespace
+
+std::size_t NearLinks::size() const {
+  std::size_t n = 0;
+  for (const auto& b : blocks_) n += b.size();
+  return n;
+}
+
+std::size_t NearLinks::bytes() const {
+  return size() * sizeof(std::uint32_t) + bytes_of(end_);
+}
+
+NearBuilder::NearBuilder(std::size_t most_sides)
+    : block_bits_(0), column_bits_(std::max(1, static_cast<int>(std::bit_width(std::max<std::size_t>(most_sides, 1) - 1)))), block_mask_(0) {
+  if (column_bits_ > most_column_bits)
+    throw Error(fmt::format("{} sides of elements are too many to link: at most {}", most_sides, std::size_t{1} << most_column_bits));
+  block_bits_ = std::min(32 - column_bits_, most_block_bits);
+  block_mask_ = (1u << block_bits_) - 1;
+  waiting_.resize((most_sides >> block_bits_) + 1);
+}
+
+void NearBuilder::grow(Waiting& w) {
+  const std::size_t size = std::clamp<std::size_t>(w.size / 8, 128, 65536);
+  w.chunks.push_back({std::make_unique_for_overwrite<std::uint32_t[]>(size), size});
+  w.size += size;
+  w.at = w.chunks.back().ends.get();
+  w.end = w.at + size;
+}
+
+NearLinks NearBuilder::finish(std::size_t rows, std::vector<float>& lines) {
+  NearLinks links;
+  links.block_bits_ = block_bits_;
+  links.column_bits_ = column_bits_;
+  const std::size_t in_block = std::size_t{1} << block_bits_, blocks = (rows + in_block - 1) >> block_bits_;
+  links.blocks_.resize(blocks);
+  links.end_.resize(rows);
+  tbb::parallel_for(std::size_t{0}, blocks, [&](std::size_t b) {
+    thread_local std::vector<std::uint32_t> ends, other;
+    Waiting& w = waiting_[b];
+    ends.clear();
+    for (auto& c : w.chunks) {
+      const std::uint32_t* begin = c.ends.get();
+      ends.insert(ends.end(), begin, &c == &w.chunks.back() ? w.at : begin + c.size);
+      c.ends.reset();
+    }
+    w = {};
+    radix_sort(ends, other, block_bits_ + column_bits_);
+    // equal ends become one link, in place
+    const std::uint32_t column_mask = (1u << column_bits_) - 1;
+    const std::size_t most = std::size_t{1} << (32 - column_bits_);
+    std::size_t out = 0, k = 0;
+    for (std::size_t row = b << block_bits_, end_row = std::min(rows, row + in_block), r = 0; row < end_row; ++row, ++r) {
+      const std::size_t begin = k;
+      while (k < ends.size() && ends[k] >> column_bits_ == r) {
+        std::size_t last = k + 1;
+        while (last < ends.size() && ends[last] == ends[k] && last - k < most) ++last;
+        ends[out++] = (ends[k] & column_mask) | static_cast<std::uint32_t>(last - k - 1) << column_bits_;
+        k = last;
+      }
+      links.end_[row] = static_cast<std::uint32_t>(out);
+      lines[row] += static_cast<float>(k - begin);
+    }
+    links.blocks_[b].assign(ends.begin(), ends.begin() + static_cast<std::ptrdiff_t>(out));
+  });
+  return links;
+}
+
+}  // namespace sunfleck
