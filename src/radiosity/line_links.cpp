@@ -66,8 +66,7 @@ class HalfBuilder {
   /// Needs skies or `count_cells`.
   float lines_of_cell(std::size_t cell) const { return sky_.all(cell); }
 
-  /// `area_of_line` of the lines of this half.
-  HalfLinks finish(std::size_t sides, const std::vector<std::uint32_t>& enclosed_part, double area_of_line) {
+  HalfLinks finish(std::size_t sides, const std::vector<std::uint32_t>& enclosed_part) {
     HalfLinks half;
     const auto part_side = [&](std::uint32_t s) { return s & enclosed_bit ? 2 * enclosed_part[(s & ~enclosed_bit) >> 1] + (s & 1u) : s; };
     half.open_up = std::move(open_up_);
@@ -84,7 +83,6 @@ class HalfBuilder {
     for (const auto& r : enclosed_reflections_)
       for (std::size_t c = 0; c < sun_.columns; ++c)
         half.first_reflection[part_side(r.low) * sun_.columns + c] += sun_.exitance[std::size_t{r.high} * sun_.columns + c];
-    if (!half.first_reflection.empty() && e_.surface.periodic) conserve_reflection(half, area_of_line);
     half.lines.resize(sides);
     for (std::size_t i = 0; i < sides; ++i) half.lines[i] = half.open_up[i] + half.open_down[i];
     for (const auto& p : enclosed_pairs_) near_.add(part_side(p.low), part_side(p.high));
@@ -194,28 +192,6 @@ class HalfBuilder {
     for (const auto& o : d.outside)
       for (std::size_t cell_side = 2 * std::size_t{o.cell}, end = cell_side + 2; cell_side < end; ++cell_side)
         for (std::size_t c = 0; c < columns; ++c) escaped_[c] += o.lines * sun_.exitance[cell_side * columns + c];
-  }
-
-  /// Lines share out what the cells reflect, in proportion to how many of them meet a cell; in sum, it is area x exitance. Not in finite
-  /// scenes, where all further light goes by the number of lines too.
-  void conserve_reflection(HalfLinks& half, double area_of_line) const {
-    const auto& s = e_.surface;
-    const std::size_t columns = sun_.columns;
-    std::vector<double> given(columns, 0.0), found = half.escaped_reflection;
-    for (std::size_t cell = 0; cell < s.cells(); ++cell) {
-      const auto t = e_.row_of_cell[cell];
-      if (s.split[t] == 0) continue;
-      for (std::size_t c = 0; c < columns; ++c)
-        given[c] += static_cast<double>(s.cell_area[t]) * (sun_.exitance[2 * cell * columns + c] + sun_.exitance[(2 * cell + 1) * columns + c]);
-    }
-    for (const auto* light : {&half.first_reflection, &half.withheld_reflection})
-      for (std::size_t i = 0; i < light->size(); ++i) found[i % columns] += (*light)[i];
-    std::vector<double> factor(columns, 1.0);
-    for (std::size_t c = 0; c < columns; ++c)
-      if (given[c] > 0.0 && found[c] > 0.0) factor[c] = given[c] / (found[c] * area_of_line);
-    for (auto* light : {&half.first_reflection, &half.withheld_reflection})
-      for (std::size_t i = 0; i < light->size(); ++i) (*light)[i] *= static_cast<float>(factor[i % columns]);
-    for (std::size_t c = 0; c < columns; ++c) half.escaped_reflection[c] *= factor[c];
   }
 
   void add_far(std::uint32_t bin, const std::vector<FarPair>& pairs, std::vector<FarPair>& far) {
@@ -462,7 +438,7 @@ LineLinks line_links(const Elements& e, const ClusterTree* tree, const SunReflec
     }
   }
   for (std::size_t h = 0; h < 2; ++h) {
-    links.half[h] = builder[h]->finish(links.sides(), links.enclosed_part, 2.0 * links.area_of_line);
+    links.half[h] = builder[h]->finish(links.sides(), links.enclosed_part);
     builder[h].reset();
   }
   return links;
