@@ -98,13 +98,7 @@ class DirectLightSolver {
  public:
   DirectLightSolver(const Scene& scene, const FacetScene& facets, const Elements& elements, const RadiositySettings& settings,
                     Timings& timings, Progress& progress)
-      : scene_(scene),
-        facets_(facets),
-        e_(elements),
-        s_(elements.surface),
-        settings_(settings),
-        timings_(timings),
-        progress_(progress) {}
+      : scene_(scene), facets_(facets), e_(elements), s_(elements.surface), settings_(settings), timings_(timings), progress_(progress) {}
 
   DirectLight run() {
     auto sources = light_sources(scene_.states);
@@ -179,7 +173,8 @@ class DirectLightSolver {
             if (below) {
               const float visible_below = weight[i] * counts_below[i].visible[c];
               sums.seen(up ^ 1) += visible_below;
-              for (std::size_t k = 0; k < skies_.size(); ++k) sums.seen(up ^ 1, 1 + k) += radiance_below[i * skies_.size() + k] * visible_below;
+              for (std::size_t k = 0; k < skies_.size(); ++k)
+                sums.seen(up ^ 1, 1 + k) += radiance_below[i * skies_.size() + k] * visible_below;
             }
           }
         }
@@ -257,7 +252,8 @@ class DirectLightSolver {
     };
     for (std::size_t c = 0; c < cells; ++c) conservation.add(is_ground(facets_, e_, c), 0.0, power(c));
     for (std::size_t c = 0; c < cells; ++c)
-      for (int side = 0; side < 2; ++side) lit[2 * c + side] = std::min(1.0f, lit[2 * c + side] * conservation.factor(is_ground(facets_, e_, c)));
+      for (int side = 0; side < 2; ++side)
+        lit[2 * c + side] = std::min(1.0f, lit[2 * c + side] * conservation.factor(is_ground(facets_, e_, c)));
   }
 
   static void clear(VisibleCounts& counts, std::size_t cells) {

@@ -54,7 +54,8 @@ class SkySums {
 /// The skies' light on every cell from `sums` over lines; a side of area A meets A / area_of_line of them.
 void sky_from_lines(const FacetScene& facets, const Elements& elements, const SkySums& sums, double area_of_line, DirectLight& direct);
 
-/// The sun; the sky as well for method direct, and where all is black. Else the lines of scattered light bring the sky's, see sky_from_lines().
+/// The sun; the sky as well for method direct, and where all is black. Else the lines of scattered light bring the sky's, see
+/// sky_from_lines().
 DirectLight direct_light(const Scene& scene, const FacetScene& facets, const Elements& elements, const RadiositySettings& settings,
                          Timings& timings, Progress& progress);
 

@@ -59,7 +59,7 @@ class LineCollector {
   const Elements& e_;
   const ClusterTree* tree_;
   const float link_error_;
-  std::vector<std::uint8_t> interior_;               ///< [sides of cells]; empty if none is
+  std::vector<std::uint8_t> interior_;              ///< [sides of cells]; empty if none is
   std::vector<std::atomic<std::uint32_t>> inside_;  ///< [cells] lines; sums of integers do not depend on the order of work
 };
 

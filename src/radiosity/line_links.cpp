@@ -148,8 +148,8 @@ class HalfBuilder {
     }
   }
 
-  /// Each line brings the sun's light, once reflected, from the very cell that it meets. The sun does not shine on enclosed parts: what they
-  /// would reflect is withheld, and left to the rest of the element.
+  /// Each line brings the sun's light, once reflected, from the very cell that it meets. The sun does not shine on enclosed parts: what
+  /// they would reflect is withheld, and left to the rest of the element.
   template <std::size_t Columns>
   void add_reflections(const DirectionLines& d) {
     const std::size_t columns = Columns ? Columns : sun_.columns;
@@ -290,7 +290,8 @@ constexpr double fewest_hits = 1000.0;  ///< of plants, per direction
 double line_pitch(const Elements& e, const RadiosityDensity& density) {
   double area = 0;
   for (std::size_t t = 0; t < e.surface.focus_count; ++t)
-    if (e.surface.split[t] > 0) area += static_cast<double>(e.surface.cell_area[t]) * (e.surface.first_cell[t + 1] - e.surface.first_cell[t]);
+    if (e.surface.split[t] > 0)
+      area += static_cast<double>(e.surface.cell_area[t]) * (e.surface.first_cell[t + 1] - e.surface.first_cell[t]);
   return std::sqrt(0.5 * std::min(e.element_area / density.lines_per_element, area / fewest_hits));
 }
 
@@ -320,9 +321,8 @@ bool clusters_pay(const std::vector<DirectionLines>& found) {
 }
 
 std::size_t bytes_of_half(const HalfLinks& h) {
-  return h.near.bytes() + bytes_of(h.far.of_side) + bytes_of(h.far.through) +
-         bytes_of(h.far.linked) + bytes_of(h.far.first_link) + bytes_of(h.far.links) + bytes_of(h.lines) + bytes_of(h.open_up) +
-         bytes_of(h.open_down) + bytes_of(h.first_reflection);
+  return h.near.bytes() + bytes_of(h.far.of_side) + bytes_of(h.far.through) + bytes_of(h.far.linked) + bytes_of(h.far.first_link) +
+         bytes_of(h.far.links) + bytes_of(h.lines) + bytes_of(h.open_up) + bytes_of(h.open_down) + bytes_of(h.first_reflection);
 }
 
 }  // namespace

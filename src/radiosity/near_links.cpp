@@ -48,7 +48,9 @@ std::size_t NearLinks::bytes() const {
 }
 
 NearBuilder::NearBuilder(std::size_t most_sides)
-    : block_bits_(0), column_bits_(std::max(1, static_cast<int>(std::bit_width(std::max<std::size_t>(most_sides, 1) - 1)))), block_mask_(0) {
+    : block_bits_(0),
+      column_bits_(std::max(1, static_cast<int>(std::bit_width(std::max<std::size_t>(most_sides, 1) - 1)))),
+      block_mask_(0) {
   if (column_bits_ > most_column_bits)
     throw Error(fmt::format("{} sides of elements are too many to link: at most {}", most_sides, std::size_t{1} << most_column_bits));
   block_bits_ = std::min(32 - column_bits_, most_block_bits);

@@ -79,8 +79,8 @@ class RadiositySolver {
   float enclosed(std::size_t cell) const { return enclosed_.empty() ? 0.0f : enclosed_[cell]; }
 
   /// Per part: its area, and for each half of the lines the sky's irradiance and the fraction of the hemisphere that is not open sky. Each
-  /// half has its own, as the product of two figures from the same lines would be biased; a side that no line of a half meets takes the area
-  /// means over its cells, which come from both. No direct light reaches enclosed parts.
+  /// half has its own, as the product of two figures from the same lines would be biased; a side that no line of a half meets takes the
+  /// area means over its cells, which come from both. No direct light reaches enclosed parts.
   void part_sources(const LineLinks& links) {
     const std::size_t sides = links.sides();
     for (std::size_t h = 0; h < 2; ++h) {
@@ -402,7 +402,7 @@ class RadiositySolver {
   const std::size_t states_, bands_, columns_;
   Elements elements_;
   DirectLight direct_;
-  Field source_[2], gathered_;  ///< source_: of each half
+  Field source_[2], gathered_;                               ///< source_: of each half
   std::vector<float> part_rest_[2], mean_rest_, part_area_;  ///< mean_rest_: area mean over the part's cells, from both halves
   std::vector<std::uint32_t> enclosed_part_;
   std::vector<float> enclosed_;
