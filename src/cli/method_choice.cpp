@@ -7,6 +7,9 @@
 
 #include <sunfleck/core/error.hpp>
 #include <sunfleck/core/names.hpp>
+#include <sunfleck/instantiation/plan.hpp>
+
+#include "cli/text_units.hpp"
 
 namespace sunfleck {
 
@@ -20,6 +23,9 @@ struct Aim {
   Quality quality;
   double error;
 };
+/// Mean share of lines inside copies that meet another one, above which the instantiation's error exceeds the clustering's.
+constexpr double most_tangled = 0.01;
+
 constexpr std::array<Aim, 3> aims{{{Quality::draft, 0.06}, {Quality::standard, 0.02}, {Quality::fine, 0.012}}};
 
 std::string checked_method(const std::string& name) {
@@ -67,6 +73,29 @@ MethodChoice choose_method(const std::optional<std::string>& method, const std::
     choice.quality = quality_for_error(*error);
   else
     choice.quality = scene.quality.value_or(Quality::standard);
+  return choice;
+}
+
+MethodReason default_method(const Scene& scene, Quality quality, Progress& progress) {
+  if (!repeats(scene)) return {"clustering", "too little repeats for instantiation to pay"};
+  InstantiationSettings settings;
+  settings.density = instantiation_density(quality);
+  const auto plan = plan_instantiation(scene, place(scene), settings, progress);
+  if (plan.tangled > most_tangled)
+    return {"clustering",
+            fmt::format("{:.1f} % of what is seen inside plants is hidden by others that reach into them: too much for instantiation",
+                        100 * plan.tangled)};
+  return {"instantiation", fmt::format("{} share {} {}", counted(plan.copies, "copy", "copies"), plan.originals,
+                                       plan.originals == 1 ? "original" : "originals")};
+}
+
+MethodChoice choose_method(const std::optional<std::string>& method, const std::optional<std::string>& quality,
+                           const std::optional<double>& error, const Scene& scene, Progress& progress) {
+  auto choice = choose_method(method, quality, error, scene.solve);
+  if (method || scene.solve.method) return choice;
+  auto reason = default_method(scene, choice.quality, progress);
+  choice.method = std::move(reason.method);
+  choice.why = std::move(reason.why);
   return choice;
 }
 

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <sunfleck/core/names.hpp>
+#include <sunfleck/instantiation/plan.hpp>
 #include <sunfleck/radiosity/plan.hpp>
 #include <sunfleck/scene/facets.hpp>
 
@@ -109,9 +110,10 @@ void add_scattering(const Scene& scene, const std::string& method, std::vector<P
   else if (method == "reference")
     items.push_back({"scattering", true, "paths traced from facets, with the variance of every mean"});
   else
-    items.push_back(
-        {"scattering", true,
-         method == "flat" ? "every facet with every other it sees" : "links between clusters, chosen by their estimated error"});
+    items.push_back({"scattering", true,
+                     method == "flat"            ? "every facet with every other it sees"
+                     : method == "instantiation" ? "inside originals by lines traced once, between copies by small fields of light"
+                                                 : "links between clusters, chosen by their estimated error"});
   const bool passes = transmits(scene) && !direct_only;
   items.push_back({"transmission", passes,
                    passes        ? "leaves pass light from side to side"
@@ -131,6 +133,34 @@ void add_certificate(const Scene& scene, const std::string& method, std::vector<
 /// Above this many facets the copies are not laid out for the sake of a plan: they would take as long, and most of the memory, of the
 /// solve.
 constexpr std::uint64_t most_laid_out = 20'000'000;
+
+/// Originals, their operators, and what copies hold.
+void add_instantiation(const Scene& scene, const MethodChoice& choice, Progress& progress, Plan& plan) {
+  const PlacedScene placed = place(scene);
+  InstantiationSettings settings;
+  settings.density = instantiation_density(choice.quality);
+  const auto predicted = plan_instantiation(scene, placed, settings, progress);
+  plan.items.push_back({"originals", true,
+                        fmt::format("{} shared by {}: traced once, opened copy by copy",
+                                    counted(predicted.originals, "original", "originals"), counted(predicted.copies, "copy", "copies"))});
+  if (predicted.merged_copies > 0)
+    plan.items.push_back(
+        {"overlap", true,
+         fmt::format("{} that reach into each other are solved together", counted(predicted.merged_copies, "copy", "copies"))});
+  else
+    plan.items.push_back({"overlap", false, "no copies reach so far into each other that they must be solved together"});
+  static const std::vector<std::pair<std::string, std::string>> names{{"originals", "originals and their operators"},
+                                                                      {"sun", "sunlit fractions of all cells"},
+                                                                      {"rays", "rays between copies"},
+                                                                      {"fields", "fields of light between copies"},
+                                                                      {"fine", "operator of the original being opened"}};
+  for (const auto& [part, bytes] : predicted.memory)
+    for (const auto& [name, text] : names)
+      if (name == part) plan.memory.emplace_back(text, bytes);
+  plan.work.emplace_back("elements of originals", predicted.elements);
+  plan.work.emplace_back("links of originals", predicted.links);
+  plan.work.emplace_back("copies opened", predicted.copies);
+}
 
 /// Elements, links and lines of the radiosity methods.
 void add_radiosity(const Scene& scene, const MethodChoice& choice, Progress& progress, Plan& plan) {
@@ -186,12 +216,18 @@ Plan make_plan(const Scene& scene, const MethodChoice& choice, Progress& progres
   add_scattering(scene, choice.method, plan.items);
   add_certificate(scene, choice.method, plan.items);
   const std::uint64_t facets = plan.counts.facets();
-  plan.memory = {{"plants as read", mesh_bytes(scene)},
-                 {"facets of all copies", facets * expanded_bytes_per_facet()},
-                 {"light on every facet", facets * solution_bytes_per_facet(scene)}};
+  const bool shares = choice.method == "instantiation";
+  plan.memory = {{"plants as read", mesh_bytes(scene)}};
+  if (!shares) {
+    plan.memory.emplace_back("facets of all copies", facets * expanded_bytes_per_facet());
+    plan.memory.emplace_back("light on every facet", facets * solution_bytes_per_facet(scene));
+  }
   plan.work = {
       {"facets", facets}, {"organs", plan.counts.organs}, {"result bytes before compression", facets * result_bytes_per_facet(scene)}};
-  add_radiosity(scene, choice, progress, plan);
+  if (shares)
+    add_instantiation(scene, choice, progress, plan);
+  else
+    add_radiosity(scene, choice, progress, plan);
   return plan;
 }
 

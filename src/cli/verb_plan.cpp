@@ -40,7 +40,8 @@ void print_items(const Plan& plan, bool done) {
 void print_text(const Scene& scene, const Plan& plan) {
   std::uint64_t copies = 0;
   for (const auto c : plan.counts.copies) copies += c;
-  fmt::print("scene     {}\nmethod    {}, quality {}\n", scene.file, plan.choice.method, name_of(plan.choice.quality));
+  fmt::print("scene     {}\nmethod    {}, quality {}{}\n", scene.file, plan.choice.method, name_of(plan.choice.quality),
+             plan.choice.why.empty() ? "" : " (" + plan.choice.why + ")");
   fmt::print("facets    {} of {}, {} of the ground; {}\n", plan.counts.plant_facets, counted(copies, "placed plant", "placed plants"),
              plan.counts.ground_facets, counted(plan.counts.organs, "organ", "organs"));
   fmt::print("\ndone\n");
@@ -58,7 +59,7 @@ void print_text(const Scene& scene, const Plan& plan) {
 
 int verb_plan(const PlanOptions& options, Progress& progress) {
   const Scene scene = read_scene(options.scene);
-  const MethodChoice choice = choose_method(options.method, options.quality, std::nullopt, scene.solve);
+  const MethodChoice choice = choose_method(options.method, options.quality, std::nullopt, scene, progress);
   for (const auto& note : scene.notes) progress.line("note: " + note);
   const Plan plan = make_plan(scene, choice, progress);
   if (options.json)

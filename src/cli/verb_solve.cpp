@@ -69,8 +69,12 @@ SolveReport run_method(const MethodChoice& choice, const Scene& scene, const Pla
   return solve_radiosity(scene, *facets, settings, sink, progress);
 }
 
+/// Paths go through copies written out; beyond this many facets they would take the memory that was saved.
+constexpr std::uint64_t most_certified_facets = 20'000'000;
+
 bool wants_certificate(const MethodChoice& choice, const Scene& scene, const PlacedScene& placed, const SolveOptions& options) {
-  return choice.method != "reference" && options.certificate && scene.solve.certificate.value_or(true) && placed.first_ground_facet > 0;
+  return choice.method != "reference" && options.certificate && scene.solve.certificate.value_or(true) && placed.first_ground_facet > 0 &&
+         placed.facets <= most_certified_facets;
 }
 
 void say_timings(const SolveReport& report, std::uint64_t facets, double seconds, Progress& progress) {
@@ -88,7 +92,7 @@ int verb_solve(const SolveOptions& options, Progress& progress) {
   if (options.threads > 0) limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(options.threads));
 
   const Scene scene = read_scene(options.scene);
-  const MethodChoice choice = choose_method(options.method, options.quality, options.error, scene.solve);
+  const MethodChoice choice = choose_method(options.method, options.quality, options.error, scene, progress);
   const std::uint64_t seed = options.seed.value_or(scene.solve.seed.value_or(1));
   const PlacedScene placed = place(scene);
   std::optional<FacetScene> facets;  // every copy written out, for the methods that need it
@@ -96,6 +100,7 @@ int verb_solve(const SolveOptions& options, Progress& progress) {
   const double read_seconds = total.seconds();
   say_what_was_read(scene, placed, read_seconds, progress);
   if (facets) say_what_is_dropped(*facets, progress);
+  if (!choice.why.empty()) progress.line(fmt::format("method {}: {}", choice.method, choice.why));
   progress.check();
 
   const FacetRows rows(scene, placed);

@@ -15,7 +15,7 @@ namespace sunfleck {
 namespace {
 
 constexpr int octahedron = 96;  // cells along an edge of the table of directions
-constexpr std::size_t segments_per_direction = 6;
+constexpr std::size_t segments_wanted = 288;
 constexpr std::size_t row_ranges = 4;  // parts in which rows are made, one thread each
 constexpr std::uint32_t line_begins = 1u << 31;
 
@@ -151,6 +151,7 @@ void LineOperator::trace(const Elements& elements, const OperatorDensity& densit
     std::vector<std::vector<std::array<float, 3>>> chosen(2 * in_direction);
     const std::size_t first_field = 2 * std::size_t{d} * in_direction;
     RandomStream random(mix(seed, d, 7));
+    const std::size_t segments_per_direction = segments_wanted / directions_ + 1;
     std::uint64_t stretches = 0;
     for (int row = 0; row < p.rows; ++row)
       for (int column = 0; column < p.columns; ++column) {

@@ -15,12 +15,13 @@
 #include <sunfleck/core/error.hpp>
 #include <sunfleck/core/memory.hpp>
 #include <sunfleck/core/sampling.hpp>
+#include <sunfleck/instantiation/plan.hpp>
 #include <sunfleck/light/light_sources.hpp>
 #include <sunfleck/scene/facets.hpp>
 
 #include "instantiation/ground_light.hpp"
 #include "instantiation/local_solve.hpp"
-#include "instantiation/originals.hpp"
+#include "instantiation/members.hpp"
 #include "instantiation/surroundings.hpp"
 
 namespace sunfleck {
@@ -29,12 +30,8 @@ namespace {
 
 constexpr std::size_t basis_bytes = std::size_t{256} << 20;  // of steps of the outer iteration
 constexpr std::uint32_t most_passes = 100, most_sweeps = 200;
-constexpr std::uint64_t small_scene = 2'000'000;  // facets
-constexpr double tangled_share = 0.01;            // of lines inside a copy that meet another
-constexpr std::uint64_t most_merged_facets = 300'000;
 constexpr std::size_t window_bytes = std::size_t{96} << 20;  // rows of finished copies that wait for their turn
-constexpr std::uint64_t coarse_stream = 0x7d3f1c5b2e8a9604ULL, fine_stream = 0x1b9e4d6a7c2f5083ULL, sun_stream = 0x5a6c3e1f9b7d2048ULL,
-                        ground_stream = 0x2e8b7a4d1c6f3095ULL;
+constexpr std::uint64_t fine_stream = 0x1b9e4d6a7c2f5083ULL, sun_stream = 0x5a6c3e1f9b7d2048ULL, ground_stream = 0x2e8b7a4d1c6f3095ULL;
 
 /// Some columns of some members of one original, side by side.
 struct Batch {
@@ -68,9 +65,7 @@ class InstantiationSolver {
     report_.method = "instantiation";
     report_.balance.assign(states_, std::vector<Balance>(bands_));
     Stopwatch watch;
-    found_ = find_originals(scene_, placed_);
-    make_originals();
-    untangle();
+    members_ = make_members(scene_, placed_, density_.coarse, density_.elements_per_organ, settings_.seed, progress_);
     report_originals();
     timed("originals", watch);
     watch = {};
@@ -93,150 +88,23 @@ class InstantiationSolver {
 
   // ---- originals
 
-  /// In small scenes finer lines cost little: they take away the bias of lines that serve for several bounces. In large ones organs are
-  /// many, and the sun's projection would take longest.
-  static InstantiationDensity adapted(InstantiationDensity d, std::uint64_t facets) {
-    if (facets < small_scene) {
-      d.coarse.directions *= 2;
-      d.coarse.lines_per_organ *= 1.5;
-    } else {
-      d.sun_lines_per_organ *= 0.3;
-    }
-    return d;
-  }
-
-  void make_originals() {
-    for (std::size_t o = 0; o < found_.originals.size(); ++o) {
-      progress_.fraction("originals", static_cast<double>(o) / static_cast<double>(found_.originals.size()));
-      originals_.push_back(make_original(found_.originals[o]));
-      auto& original = originals_.back();
-      original.coarse =
-          std::make_unique<LineOperator>(original.elements, density_.coarse, mix(settings_.seed, coarse_stream, o), progress_);
-    }
-    for (const auto& o : originals_) copies_.surfaces.push_back(&o.elements.surface);
-    for (const auto& m : found_.members) {
-      maps_.push_back(m.map);
-      copies_.copies.push_back({m.original, m.map.affine()});
-    }
-    copies_.ground = placed_.ground;
-    copies_.periodic = scene_.periodic;
-  }
-
   void report_originals() {
     std::uint64_t elements = 0, links = 0, bytes = 0;
-    for (const auto& o : originals_) {
+    for (const auto& o : members_.originals) {
       elements += o.elements.size();
       links += o.coarse->inside.count.size();
       bytes += o.coarse->bytes() + o.elements.bytes();
       fragments_ += o.coarse->fragments;
     }
-    report_.counts.emplace_back("originals", originals_.size());
-    report_.counts.emplace_back("copies", found_.members.size());
+    report_.counts.emplace_back("originals", members_.originals.size());
+    report_.counts.emplace_back("copies", members_.size());
+    if (members_.merged > 0) report_.counts.emplace_back("merged_copies", members_.merged);
     report_.counts.emplace_back("elements", elements);
     report_.counts.emplace_back("links", links);
     report_.memory.emplace_back("originals", bytes);
     links_ = links;
-    progress_.line(
-        fmt::format("{} originals for {} copies, {} elements, {} links", originals_.size(), found_.members.size(), elements, links));
-  }
-
-  // ---- copies that reach into each other
-
-  /// What stands between two leaves of a copy and is not of it is missing in the original's operator. Copies for which that is more than
-  /// a little are solved together with those that stand there, as one.
-  void untangle() {
-    const Surroundings around(copies_, maps_, originals_);
-    const auto groups = tangled_groups(around);
-    if (groups.empty()) return;
-    std::size_t members = 0;
-    for (const auto& g : groups) members += g.size();
-    progress_.line(fmt::format("{} copies reach into each other and are solved as {}", members, groups.size()));
-    report_.counts.emplace_back("merged_copies", members);
-    found_ = merged(found_, groups);
-    originals_.clear();
-    maps_.clear();
-    copies_ = {};
-    make_originals();
-  }
-
-  std::vector<std::vector<std::uint32_t>> tangled_groups(const Surroundings& around) {
-    struct Pair {
-      double share;
-      std::uint32_t a, b;
-    };
-    std::vector<std::vector<Pair>> found(maps_.size());
-    std::vector<double> own(maps_.size(), 0.0);
-    tbb::parallel_for(std::uint32_t{0}, static_cast<std::uint32_t>(maps_.size()), [&](std::uint32_t m) {
-      const auto& segments = coarse_of(m).segments;
-      std::map<std::uint32_t, std::uint32_t> met;
-      for (const auto& segment : segments)
-        if (const auto j = around.stands_between(m, segment); j != Surroundings::none) ++met[j];
-      for (const auto& [j, n] : met) {
-        const double share = static_cast<double>(n) / static_cast<double>(segments.size());
-        if (j != m)
-          found[m].push_back({share, m, j});
-        else
-          own[m] = share;
-      }
-    });
-    std::vector<Pair> pairs;
-    double worst = 0;
-    for (const auto& list : found)
-      for (const auto& p : list) {
-        worst = std::max(worst, p.share);
-        if (p.share > tangled_share) pairs.push_back(p);
-      }
-    if (getenv("SAY"))
-      fmt::print(stderr, "worst tangle {:.4f} own {:.4f} pairs {}\n", worst, own.empty() ? 0.0 : *std::max_element(own.begin(), own.end()),
-                 pairs.size());
-    std::stable_sort(pairs.begin(), pairs.end(), [](const Pair& a, const Pair& b) { return a.share > b.share; });
-    std::vector<std::uint32_t> root(maps_.size());
-    std::vector<std::uint64_t> facets(maps_.size());
-    std::uint64_t unique = 0, spent = 0;
-    for (std::uint32_t m = 0; m < root.size(); ++m) root[m] = m, facets[m] = found_.originals[found_.members[m].original].facets;
-    for (const auto& o : found_.originals) unique += o.facets;
-    const auto find = [&](std::uint32_t m) {
-      while (root[m] != m) m = root[m] = root[root[m]];
-      return m;
-    };
-    for (const auto& p : pairs) {
-      const auto a = find(p.a), b = find(p.b);
-      if (a == b) continue;
-      const auto together = facets[a] + facets[b];
-      if (spent + together > most_merged_facets + unique) continue;  // what is gained would be lost in memory and time
-      spent += together;
-      root[b] = a;
-      facets[a] = together;
-    }
-    std::map<std::uint32_t, std::vector<std::uint32_t>> by_root;
-    for (std::uint32_t m = 0; m < root.size(); ++m) by_root[find(m)].push_back(m);
-    std::vector<std::vector<std::uint32_t>> groups;
-    for (auto& [r, list] : by_root)
-      if (list.size() > 1) groups.push_back(std::move(list));
-    return groups;
-  }
-
-  OriginalLight make_original(const Original& original) {
-    Scene own;
-    own.file = scene_.file;
-    own.bands = scene_.bands;
-    own.band_units = scene_.band_units;
-    own.optics = scene_.optics;
-    OriginalLight out;
-    out.facet_of_part.push_back(0);
-    for (const auto& part : original.parts) {
-      auto entry = scene_.plants[part.plant];
-      entry.placements = {{part.map}};
-      own.plants.push_back(std::move(entry));
-      out.facet_of_part.push_back(out.facet_of_part.back() + static_cast<std::uint32_t>(placed_.plant_facets[part.plant]));
-    }
-    const FacetScene facets = expand(own);
-    RadiositySettings radiosity;
-    radiosity.density = density_of(Quality::standard);
-    radiosity.density.elements_per_organ = density_.elements_per_organ;
-    out.elements = make_elements(own, facets, radiosity);
-    out.facet_material = facets.optics;
-    return out;
+    progress_.line(fmt::format("{} originals for {} copies, {} elements, {} links", members_.originals.size(),
+                               members_.found.members.size(), elements, links));
   }
 
   // ---- direct light and what sees what
@@ -244,14 +112,14 @@ class InstantiationSolver {
   void sun() {
     const auto& density = density_;
     double pitch = 0;
-    for (std::size_t m = 0; m < maps_.size(); ++m) {
-      const double organ = originals_[found_.members[m].original].elements.organ_area * maps_[m].scale * maps_[m].scale;
+    for (std::size_t m = 0; m < members_.maps.size(); ++m) {
+      const double organ = members_.original_of(m).elements.organ_area * members_.maps[m].scale * members_.maps[m].scale;
       const double own = std::sqrt(0.5 * organ / (density.sun_lines_per_organ / density.sun_samples));
       pitch = pitch == 0 ? own : std::min(pitch, own);
     }
     std::uint64_t fragments = 0;
     for (const auto* sun : lights_.suns) {
-      lit_.push_back(lit_cells(copies_, sun_directions(*sun, density.sun_samples, mix(settings_.seed, sun_stream)), pitch,
+      lit_.push_back(lit_cells(members_.copies, sun_directions(*sun, density.sun_samples, mix(settings_.seed, sun_stream)), pitch,
                                mix(settings_.seed, sun_stream, 1), progress_));
       fragments += lit_.back().fragments;
       report_.memory.emplace_back("sun", bytes_of(lit_.back().lit));
@@ -260,33 +128,32 @@ class InstantiationSolver {
   }
 
   void look_around() {
-    around_ = std::make_unique<Surroundings>(copies_, maps_, originals_);
-    const std::size_t members = maps_.size();
+    around_ = std::make_unique<Surroundings>(members_.copies, members_.maps, members_.originals);
+    const std::size_t members = members_.maps.size();
     field_start_.assign(members + 1, 0);
     end_start_.assign(members + 1, 0);
     for (std::size_t m = 0; m < members; ++m) {
-      const auto& op = coarse_of(m);
+      const auto& op = members_.coarse_of(m);
       field_start_[m + 1] = field_start_[m] + op.fields();
       end_start_[m + 1] = end_start_[m] + op.points.size();
     }
     ends_.resize(end_start_.back());
     tbb::parallel_for(std::size_t{0}, members, [&](std::size_t m) {
       if (progress_.cancelled()) return;
-      look_from(static_cast<std::uint32_t>(m), coarse_of(m), ends_.data() + end_start_[m]);
+      look_from(static_cast<std::uint32_t>(m), members_.coarse_of(m), ends_.data() + end_start_[m]);
     });
     progress_.check();
-    ground_ = view_from_ground(scene_, placed_.ground, *around_, lights_, density_.ground_rays, density_.sun_samples,
+    ground_ = view_from_ground(scene_, members_.copies.ground, *around_, lights_,
+                               std::max(8u, density_.ground_rays / (members_.ground_split * members_.ground_split)), density_.sun_samples,
                                mix(settings_.seed, ground_stream), progress_);
     report_.counts.emplace_back("rays", ends_.size() + ground_.ends.size());
     report_.memory.emplace_back("rays", around_->bytes() + bytes_of(ends_) + ground_.bytes());
   }
 
-  const LineOperator& coarse_of(std::size_t member) const { return *originals_[found_.members[member].original].coarse; }
-
   void look_from(std::uint32_t m, const LineOperator& op, RayEnd* ends) const {
     const std::size_t pixels = std::size_t{op.pixels()} * op.pixels();
     for (std::size_t f = 0; f < op.fields(); ++f) {
-      const Vec3 d = maps_[m].direction(op.direction(f / pixels));
+      const Vec3 d = members_.maps[m].direction(op.direction(f / pixels));
       for (auto k = op.point_start[f]; k < op.point_start[f + 1]; ++k) ends[k] = around_->look(m, op.points[k], d);
     }
   }
@@ -296,7 +163,7 @@ class InstantiationSolver {
   /// Batches over the members given, members of one original together, in a fixed order.
   std::vector<Batch> batches_of(const std::vector<std::uint32_t>& members) const {
     std::map<std::uint32_t, std::vector<std::uint32_t>> by_original;
-    for (const auto m : members) by_original[found_.members[m].original].push_back(m);
+    for (const auto m : members) by_original[members_.found.members[m].original].push_back(m);
     std::vector<Batch> out;
     for (const auto& [original, list] : by_original) {
       const std::size_t lanes = list.size() * columns_;
@@ -364,7 +231,7 @@ class InstantiationSolver {
     const std::size_t pixels = std::size_t{op.pixels()} * op.pixels();
     std::vector<float> radiance(b.columns, 0.0f);
     for (std::size_t j = 0; j < b.members.size(); ++j) {
-      const auto& map = maps_[b.members[j]];
+      const auto& map = members_.maps[b.members[j]];
       const std::size_t lane = j * b.columns;
       for (std::size_t f = 0; f < op.fields(); ++f) {
         if (sky && f % pixels == 0) {
@@ -399,9 +266,9 @@ class InstantiationSolver {
 
   /// Per element side: cosine towards the sun times the lit fraction, area mean over its cells.
   void sun_on_elements(std::uint32_t m, std::size_t sun, std::vector<float>& out) const {
-    const auto& e = originals_[found_.members[m].original].elements;
+    const auto& e = members_.original_of(m).elements;
     const auto& s = e.surface;
-    const Vec3 d = maps_[m].direction_back(lights_.suns[sun]->direction);
+    const Vec3 d = members_.maps[m].direction_back(lights_.suns[sun]->direction);
     const std::uint8_t* lit = lit_[sun].lit.data() + lit_[sun].first[m];
     out.assign(2 * e.size(), 0.0f);
     for (std::size_t t = 0; t < s.size(); ++t) {
@@ -436,7 +303,7 @@ class InstantiationSolver {
   // ---- outer iteration
 
   std::vector<std::uint32_t> all_members() const {
-    std::vector<std::uint32_t> out(maps_.size());
+    std::vector<std::uint32_t> out(members_.maps.size());
     for (std::uint32_t m = 0; m < out.size(); ++m) out[m] = m;
     return out;
   }
@@ -497,7 +364,7 @@ class InstantiationSolver {
       with_width(batches[q].width, [&](auto constant) {
         constexpr int width = decltype(constant)::value;
         const Batch& b = batches[q];
-        const auto& original = originals_[b.original];
+        const auto& original = members_.originals[b.original];
         const LineOperator& op = *original.coarse;
         LaneField<width> field, source(2 * original.elements.size(), Lanes<width>{}), radiosity;
         incoming<width>(b, op, stored_ends(b), in, direct, field);
@@ -522,9 +389,9 @@ class InstantiationSolver {
   /// Scalar product of two lights per column: power that leaves through the fields and from the ground as the weight.
   std::vector<double> product(const Light& a, const Light& b) const {
     std::vector<double> out(columns_, 0.0);
-    for (std::size_t m = 0; m < maps_.size(); ++m) {
-      const auto& op = coarse_of(m);
-      const double unit = maps_[m].scale * maps_[m].scale * op.line_area / op.directions();
+    for (std::size_t m = 0; m < members_.maps.size(); ++m) {
+      const auto& op = members_.coarse_of(m);
+      const double unit = members_.maps[m].scale * members_.maps[m].scale * op.line_area / op.directions();
       const float *x = a.fields.data() + field_start_[m] * columns_, *y = b.fields.data() + field_start_[m] * columns_;
       for (std::size_t f = 0; f < op.fields(); ++f)
         for (std::size_t c = 0; c < columns_; ++c) out[c] += unit * op.field_lines[f] * x[f * columns_ + c] * y[f * columns_ + c];
@@ -642,14 +509,14 @@ class InstantiationSolver {
     std::uint32_t fine_of = no_parent;
     std::unique_ptr<LineOperator> fine;
     std::size_t first = 0;
-    while (first < maps_.size()) {
+    while (first < members_.maps.size()) {
       std::vector<std::uint32_t> window;
       std::size_t bytes = 0;
-      for (; first < maps_.size() && (window.empty() || bytes < window_bytes); ++first) {
+      for (; first < members_.maps.size() && (window.empty() || bytes < window_bytes); ++first) {
         window.push_back(static_cast<std::uint32_t>(first));
-        bytes += found_.originals[found_.members[first].original].facets * 2 * sizeof(float) * (columns_ + states_);
+        bytes += members_.found.originals[members_.found.members[first].original].facets * 2 * sizeof(float) * (columns_ + states_);
       }
-      progress_.fraction("opening", static_cast<double>(window.front()) / static_cast<double>(maps_.size()));
+      progress_.fraction("opening", static_cast<double>(window.front()) / static_cast<double>(members_.maps.size()));
       std::vector<Rows> rows(placed_rows(window));
       auto batches = batches_of(window);
       for (std::size_t begin = 0; begin < batches.size();) {
@@ -658,8 +525,8 @@ class InstantiationSolver {
         if (fine_of != batches[begin].original) {
           fine.reset();
           fine_of = batches[begin].original;
-          fine = std::make_unique<LineOperator>(originals_[fine_of].elements, density_.fine, mix(settings_.seed, fine_stream, fine_of),
-                                                progress_);
+          fine = std::make_unique<LineOperator>(members_.originals[fine_of].elements, density_.fine,
+                                                mix(settings_.seed, fine_stream, fine_of), progress_);
           if (fine->bytes() > fine_bytes_) fine_bytes_ = fine->bytes();
         }
         std::vector<std::vector<Balance>> partial(end - begin);
@@ -693,7 +560,7 @@ class InstantiationSolver {
     row_of_member_.clear();
     for (const auto m : window) {
       row_of_member_.push_back(out.size());
-      for (const auto c : found_.members[m].copies) {
+      for (const auto c : members_.found.members[m].copies) {
         Rows r;
         r.first = placed_.copies[c].first_facet;
         r.count = placed_.plant_facets[placed_.copies[c].plant];
@@ -707,7 +574,7 @@ class InstantiationSolver {
 
   template <int width>
   void open(const Batch& b, const LineOperator& fine, std::vector<Rows>& rows, std::uint32_t window_first, std::vector<Balance>& balance) {
-    const auto& original = originals_[b.original];
+    const auto& original = members_.originals[b.original];
     const auto& e = original.elements;
     const std::size_t sides = 2 * e.size(), lanes = b.members.size() * b.columns;
     LaneField<width> field, source(sides, Lanes<width>{}), radiosity;
@@ -745,7 +612,7 @@ class InstantiationSolver {
   template <int width>
   void escaped(const Batch& b, const LineOperator& op, const std::vector<const RayEnd*>& ends, const LaneField<width>& radiosity,
                std::vector<Balance>& balance) const {
-    const auto& e = originals_[b.original].elements;
+    const auto& e = members_.originals[b.original].elements;
     std::vector<float> open(op.fields());
     for (std::size_t j = 0; j < b.members.size(); ++j) {
       for (std::size_t f = 0; f < op.fields(); ++f) {
@@ -753,7 +620,7 @@ class InstantiationSolver {
         for (auto k = op.point_start[f]; k < op.point_start[f + 1]; ++k) n += ends[j][k].is_sky();
         open[f] = n ? static_cast<float>(n) / static_cast<float>(op.point_start[f + 1] - op.point_start[f]) : 0.0f;
       }
-      const double scale = maps_[b.members[j]].scale * maps_[b.members[j]].scale;
+      const double scale = members_.maps[b.members[j]].scale * members_.maps[b.members[j]].scale;
       for (std::size_t side = 0; side < radiosity.size(); ++side) {
         if (op.lines[side / 2] == 0) continue;
         float lines = 0;
@@ -770,10 +637,10 @@ class InstantiationSolver {
   void member_rows(const Batch& b, std::size_t j, const LineOperator& fine, const LaneField<width>& sky, const LaneField<width>& scattered,
                    std::vector<Rows>& rows, std::size_t first_row, std::vector<Balance>& balance) {
     const std::uint32_t m = b.members[j];
-    const auto& original = originals_[b.original];
+    const auto& original = members_.originals[b.original];
     const auto& e = original.elements;
     const auto& s = e.surface;
-    const double scale = maps_[m].scale * maps_[m].scale;
+    const double scale = members_.maps[m].scale * members_.maps[m].scale;
     for (std::size_t t = 0; t < s.size(); ++t) {
       if (s.split[t] == 0) continue;
       const std::uint32_t facet = e.order[t];
@@ -798,7 +665,7 @@ class InstantiationSolver {
             rest += share * scattered[from][lane];
           }
           if (sun != LightSources::none) {
-            const Vec3 d = maps_[m].direction_back(lights_.suns[sun]->direction);
+            const Vec3 d = members_.maps[m].direction_back(lights_.suns[sun]->direction);
             const double cosine = s.normal[0][t] * d.x + s.normal[1][t] * d.y + s.normal[2][t] * d.z;
             if ((cosine > 0) == (side == 0)) {
               for (auto cell = begin; cell < end; ++cell)
@@ -832,23 +699,25 @@ class InstantiationSolver {
     std::vector<float> b = e;
     reflect_from_ground(b);
     const auto& optics = scene_.ground->optics;
-    std::vector<float> irradiance(states_ * n * 2 * bands_), sunlit(lights_.suns.empty() ? 0 : states_ * n * 2, 0.0f);
-    for (std::size_t f = 0; f < n; ++f)
+    const std::size_t parts = std::size_t{members_.ground_split} * members_.ground_split;
+    const float share = 1.0f / static_cast<float>(parts);
+    std::vector<float> irradiance(states_ * n * 2 * bands_, 0.0f), sunlit(lights_.suns.empty() ? 0 : states_ * n * 2, 0.0f);
+    for (std::size_t part = 0; part < n * parts; ++part)
       for (std::size_t c = 0; c < columns_; ++c) {
-        const std::size_t state = c / bands_, band = c % bands_;
+        const std::size_t f = part / parts, state = c / bands_, band = c % bands_;
         auto& balance = report_.balance[state][band];
         for (std::size_t side = 0; side < 2; ++side) {
-          const std::size_t i = 2 * f + side;
+          const std::size_t i = 2 * part + side;
           const float value = e[i * columns_ + c];
-          irradiance[((state * n + f) * 2 + side) * bands_ + band] = value;
-          const double area = ground_.area[f];
+          irradiance[((state * n + f) * 2 + side) * bands_ + band] += share * value;
+          const double area = ground_.area[part];
           balance.incident += area * ground_direct(i, c);
           balance.ground +=
               area * value *
               (1.0 - (side == 0 ? optics.reflectance_front[band] : optics.reflectance_back[band]) - optics.transmittance[band]);
           balance.escaped += area * b[i * columns_ + c] * ground_.sky_seen[i];
           if (const auto sun = lights_.sun_of_state[state]; sun != LightSources::none && band == 0)
-            sunlit[(state * n + f) * 2 + side] = ground_.sunlit[sun][i];
+            sunlit[(state * n + f) * 2 + side] += share * ground_.sunlit[sun][i];
         }
       }
     sink_.rows({placed_.first_ground_facet, n, irradiance.data(), lights_.suns.empty() ? nullptr : sunlit.data(), nullptr});
@@ -862,10 +731,7 @@ class InstantiationSolver {
   const std::size_t states_, bands_, columns_;
   const LightSources lights_;
   const InstantiationDensity density_;
-  Originals found_;
-  std::vector<OriginalLight> originals_;
-  std::vector<Similarity> maps_;
-  CopyScene copies_;
+  Members members_;
   std::vector<LitCells> lit_;
   std::unique_ptr<Surroundings> around_;
   std::vector<std::uint64_t> field_start_, end_start_;  ///< per member

@@ -8,7 +8,7 @@
 #include <sunfleck/scene/scene.hpp>
 #include <sunfleck/visibility/copies.hpp>
 
-#include "instantiation/line_operator.hpp"
+#include "instantiation/members.hpp"
 
 namespace sunfleck {
 
@@ -21,14 +21,6 @@ struct RayEnd {
   bool is_sky() const { return target == sky; }
   bool is_ground() const { return !is_sky() && (target & ground_bit); }
   std::uint32_t facet() const { return target & ~ground_bit; }
-};
-
-/// An original as light sees it. The original's frame: p = elements.surface.origin + (coordinates of the surface).
-struct OriginalLight {
-  Elements elements;
-  std::vector<std::uint32_t> facet_material;  ///< [n] row of Scene::optics, by facet of the original
-  std::vector<std::uint32_t> facet_of_part;   ///< [parts + 1] first facet of each part
-  std::unique_ptr<LineOperator> coarse;
 };
 
 /// Rays through a scene of members.

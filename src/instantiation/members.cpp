@@ -1,0 +1,170 @@
+#include "instantiation/members.hpp"
+
+#include <algorithm>
+#include <map>
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <sunfleck/core/sampling.hpp>
+#include <sunfleck/scene/facets.hpp>
+
+#include "instantiation/surroundings.hpp"
+
+namespace sunfleck {
+
+namespace {
+
+constexpr double tangled_share = 0.01;  // of lines inside a copy that meet another: from here on they are solved together
+constexpr std::uint64_t most_merged_facets = 300'000;
+constexpr std::uint64_t coarse_stream = 0x7d3f1c5b2e8a9604ULL;
+
+OriginalLight original_light(const Scene& scene, const PlacedScene& placed, const Original& original, double elements_per_organ) {
+  Scene own;
+  own.file = scene.file;
+  own.bands = scene.bands;
+  own.band_units = scene.band_units;
+  own.optics = scene.optics;
+  OriginalLight out;
+  out.facet_of_part.push_back(0);
+  for (const auto& part : original.parts) {
+    auto entry = scene.plants[part.plant];
+    entry.placements = {{part.map}};
+    own.plants.push_back(std::move(entry));
+    out.facet_of_part.push_back(out.facet_of_part.back() + static_cast<std::uint32_t>(placed.plant_facets[part.plant]));
+  }
+  const FacetScene facets = expand(own);
+  RadiositySettings settings;
+  settings.density = density_of(Quality::standard);
+  settings.density.elements_per_organ = elements_per_organ;
+  out.elements = make_elements(own, facets, settings);
+  out.facet_material = facets.optics;
+  return out;
+}
+
+/// Light on the ground varies over a tenth of a plant's size: larger facets are cut, as far as a few ten thousand parts go.
+void split_ground(const std::vector<Triangle>& ground, Members& out) {
+  double plant = 0, facet = 0;
+  for (const auto& copy : out.copies.copies) {
+    const Vec3 size = out.copies.surfaces[copy.surface]->focus.size();
+    plant += std::cbrt(std::fabs(glm::determinant(copy.map.linear))) * std::max({size.x, size.y, size.z});
+  }
+  for (const auto& t : ground) facet += std::sqrt(glm::length(area_vector(t)));
+  if (out.copies.copies.empty() || ground.empty() || !(plant > 0)) {
+    out.copies.ground = ground;
+    return;
+  }
+  const double wanted = facet / static_cast<double>(ground.size()) / (0.1 * plant / static_cast<double>(out.copies.copies.size()));
+  const double affordable = std::sqrt(40'000.0 / static_cast<double>(ground.size()));
+  const int k = std::clamp(static_cast<int>(std::lround(std::min(wanted, affordable))), 1, 4);
+  out.ground_split = static_cast<std::uint32_t>(k);
+  for (const auto& t : ground) {
+    const auto at = [&](int i, int j) { return t[0] + (t[1] - t[0]) * (double(i) / k) + (t[2] - t[0]) * (double(j) / k); };
+    for (int j = 0; j < k; ++j)
+      for (int i = 0; i + j < k; ++i) {
+        out.copies.ground.push_back({at(i, j), at(i + 1, j), at(i, j + 1)});
+        if (i + j + 1 < k) out.copies.ground.push_back({at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)});
+      }
+  }
+}
+
+Members with_light(const Scene& scene, const PlacedScene& placed, Originals found, const OperatorDensity& coarse, double elements_per_organ,
+                   std::uint64_t seed, Progress& progress) {
+  Members out;
+  out.found = std::move(found);
+  for (std::size_t o = 0; o < out.found.originals.size(); ++o) {
+    progress.check();
+    progress.fraction("originals", static_cast<double>(o) / static_cast<double>(out.found.originals.size()));
+    out.originals.push_back(original_light(scene, placed, out.found.originals[o], elements_per_organ));
+    auto& light = out.originals.back();
+    light.coarse = std::make_unique<LineOperator>(light.elements, coarse, mix(seed, coarse_stream, o), progress);
+  }
+  for (const auto& o : out.originals) out.copies.surfaces.push_back(&o.elements.surface);
+  for (const auto& m : out.found.members) {
+    out.maps.push_back(m.map);
+    out.copies.copies.push_back({m.original, m.map.affine()});
+  }
+  split_ground(placed.ground, out);
+  out.copies.periodic = scene.periodic;
+  return out;
+}
+
+/// Of the lines inside member `a`, the share that member `b` stands in (b = a: an image of it).
+struct Tangle {
+  double share;
+  std::uint32_t a, b;
+};
+
+std::vector<Tangle> tangles(const Members& members, const Surroundings& around) {
+  std::vector<std::vector<Tangle>> found(members.size());
+  tbb::parallel_for(std::uint32_t{0}, static_cast<std::uint32_t>(members.size()), [&](std::uint32_t m) {
+    const auto& segments = members.coarse_of(m).segments;
+    std::map<std::uint32_t, std::uint32_t> met;
+    for (const auto& segment : segments)
+      if (const auto j = around.stands_between(m, segment); j != Surroundings::none) ++met[j];
+    for (const auto& [j, n] : met) found[m].push_back({static_cast<double>(n) / static_cast<double>(segments.size()), m, j});
+  });
+  std::vector<Tangle> out;
+  for (const auto& list : found) out.insert(out.end(), list.begin(), list.end());
+  return out;
+}
+
+double mean_share(const Members& members, const std::vector<Tangle>& list) {
+  double sum = 0;
+  for (const auto& t : list) sum += t.share;
+  return members.size() > 0 ? sum / static_cast<double>(members.size()) : 0.0;
+}
+
+/// Members to put together, the most tangled first.
+std::vector<std::vector<std::uint32_t>> groups_of(const Members& members, std::vector<Tangle> list) {
+  std::stable_sort(list.begin(), list.end(), [](const Tangle& a, const Tangle& b) { return a.share > b.share; });
+  std::vector<std::uint32_t> root(members.size());
+  std::vector<std::uint64_t> facets(members.size());
+  std::uint64_t unique = 0, spent = 0;
+  for (std::uint32_t m = 0; m < root.size(); ++m) {
+    root[m] = m;
+    facets[m] = members.found.originals[members.found.members[m].original].facets;
+  }
+  for (const auto& o : members.found.originals) unique += o.facets;
+  const auto find = [&](std::uint32_t m) {
+    while (root[m] != m) m = root[m] = root[root[m]];
+    return m;
+  };
+  for (const auto& t : list) {
+    const auto a = find(t.a), b = find(t.b);
+    if (t.share <= tangled_share || a == b) continue;
+    const auto together = facets[a] + facets[b];
+    if (spent + together > most_merged_facets + unique) continue;
+    spent += together;
+    root[b] = a;
+    facets[a] = together;
+  }
+  std::map<std::uint32_t, std::vector<std::uint32_t>> by_root;
+  for (std::uint32_t m = 0; m < root.size(); ++m) by_root[find(m)].push_back(m);
+  std::vector<std::vector<std::uint32_t>> groups;
+  for (auto& [r, list_of_root] : by_root)
+    if (list_of_root.size() > 1) groups.push_back(std::move(list_of_root));
+  return groups;
+}
+
+}  // namespace
+
+Members make_members(const Scene& scene, const PlacedScene& placed, const OperatorDensity& coarse, double elements_per_organ,
+                     std::uint64_t seed, Progress& progress) {
+  Members members = with_light(scene, placed, find_originals(scene, placed), coarse, elements_per_organ, seed, progress);
+  const auto list = tangles(members, Surroundings(members.copies, members.maps, members.originals));
+  members.tangled = mean_share(members, list);
+  const auto groups = groups_of(members, list);
+  if (groups.empty()) return members;
+  std::uint64_t merged_copies = 0;
+  for (const auto& g : groups) merged_copies += g.size();
+  progress.line(fmt::format("{} copies reach into each other and are solved as {}", merged_copies, groups.size()));
+  auto found = merged(members.found, groups);
+  members = {};
+  members = with_light(scene, placed, std::move(found), coarse, elements_per_organ, seed, progress);
+  members.merged = merged_copies;
+  members.tangled = mean_share(members, tangles(members, Surroundings(members.copies, members.maps, members.originals)));
+  return members;
+}
+
+}  // namespace sunfleck

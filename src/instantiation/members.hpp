@@ -1,0 +1,45 @@
+// A scene as members of originals, ready for light.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include <sunfleck/core/progress.hpp>
+#include <sunfleck/visibility/copies.hpp>
+
+#include "instantiation/line_operator.hpp"
+#include "instantiation/originals.hpp"
+
+namespace sunfleck {
+
+/// An original as light sees it. The original's frame: p = elements.surface.origin + (coordinates of the surface).
+struct OriginalLight {
+  Elements elements;
+  std::vector<std::uint32_t> facet_material;  ///< [n] row of Scene::optics, by facet of the original
+  std::vector<std::uint32_t> facet_of_part;   ///< [parts + 1] first facet of each part
+  std::unique_ptr<LineOperator> coarse;
+};
+
+/// Members and what they share. `copies` points into `originals`.
+struct Members {
+  Originals found;
+  std::vector<OriginalLight> originals;
+  std::vector<Similarity> maps;  ///< per member
+  CopyScene copies;              ///< per member, with the ground
+  std::uint32_t ground_split = 1;  ///< k: every facet of the ground stands in `copies` as k * k parts, one after the other
+  std::uint64_t merged = 0;      ///< copies that were put together with others
+  double tangled = 0;            ///< mean share of lines inside members that meet another one
+
+  std::size_t size() const { return maps.size(); }
+  const OriginalLight& original_of(std::size_t member) const { return originals[found.members[member].original]; }
+  const LineOperator& coarse_of(std::size_t member) const { return *original_of(member).coarse; }
+};
+
+/// Finds originals, traces their coarse operators, and puts copies that reach into each other together: what stands between two leaves
+/// of a copy and is not of it is missing in the original's operator (measured in docs/instantiation.md). Where that would cost more
+/// facets than the scene's originals have and 300,000 besides, the least tangled are left as they are.
+Members make_members(const Scene& scene, const PlacedScene& placed, const OperatorDensity& coarse, double elements_per_organ,
+                     std::uint64_t seed, Progress& progress);
+
+}  // namespace sunfleck
