@@ -158,8 +158,11 @@ std::string ViewerServer::url() const {
 }
 
 void ViewerServer::run(Progress& progress) {
-  std::thread listening([this] { impl_->server.listen_after_bind(); });
-  std::atomic<bool> loaded{false};
+  std::atomic<bool> loaded{false}, ended{false};
+  std::thread listening([this, &ended] {
+    impl_->server.listen_after_bind();
+    ended = true;
+  });
   std::exception_ptr failure;
   std::thread loading([&] {
     try {
@@ -175,7 +178,10 @@ void ViewerServer::run(Progress& progress) {
     if (loaded && !told) progress.line(fmt::format("ready after {:.1f} s; Ctrl-C ends the viewer", watch.seconds())), told = true;
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
-  impl_->server.stop();
+  while (!ended) {  // a stop that comes before the thread listens is lost
+    impl_->server.stop();
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
   listening.join();
   loading.join();
   if (failure) std::rethrow_exception(failure);
