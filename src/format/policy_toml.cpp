@@ -17,7 +17,7 @@ constexpr double unbounded = std::numeric_limits<double>::infinity();
 
 TomlSchema policy_schema() {
   const TomlSchema type =
-      TomlSchema::of({"representative", "scale", "least_members"},
+      TomlSchema::of({"representative", "scale", "align", "least_members"},
                      {{"parameters", TomlSchema::names(TomlSchema::leaf())}, {"converged", TomlSchema::of({"parameter", "above"})}});
   return TomlSchema::of({}, {{"type", TomlSchema::names(type)}, {"tables", TomlSchema::of({"basis", "order", "error", "field_pixels"})}});
 }
@@ -103,6 +103,8 @@ PolicyType read_type(const std::string& name, const TomlValue& table) {
     type.representative = choice == "medoid" ? Representative::medoid : choice == "first" ? Representative::first : Representative::largest;
   }
   if (const auto value = table.get("scale")) type.scale = value->one_of({"area", "size"}) == "area" ? StandIn::area : StandIn::size;
+  if (const auto value = table.get("align"))
+    type.align = value->one_of({"upright", "frame"}) == "frame" ? Alignment::frame : Alignment::upright;
   if (const auto value = table.get("least_members")) type.least_members = static_cast<std::uint32_t>(value->integer(1, 1000000000));
   return type;
 }

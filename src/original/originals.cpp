@@ -73,11 +73,10 @@ OriginalGeometry original_geometry(const Scene& scene, const OriginalClass& orig
   return out;
 }
 
-OriginalGeometry structure_geometry(const Scene& scene, std::uint32_t plant, std::uint32_t structure, bool own_frame) {
+OriginalGeometry structure_geometry(const Scene& scene, std::uint32_t plant, std::uint32_t structure) {
   OriginalGeometry out = empty_geometry(scene);
   const auto facets = structure_facets(scene.plants[plant], structure);
-  const Mat3 back = own_frame ? glm::transpose(facets.frame.linear) : Mat3{1.0};
-  append(out, facets.corners, facets.optics, {back, own_frame ? -(back * facets.frame.translation) : Vec3{0.0}});
+  append(out, facets.corners, facets.optics, Affine{});
   keep_used_materials(out);
   return out;
 }

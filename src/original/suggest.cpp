@@ -79,8 +79,15 @@ struct Population {
   std::vector<Specimen> specimens;
 };
 
-Population measure(const Scene& scene, const std::vector<Candidate>& picked, const SuggestSettings& settings, Progress& progress) {
-  Population population;
+struct Measurements {
+  std::vector<std::string> names;               ///< of parameters
+  std::vector<std::vector<double>> parameters;  ///< [structures][names]
+  std::vector<OriginalTables> tables;           ///< [structures] in the plant's frame
+  std::vector<StructureFacets> frames;          ///< without facets
+};
+
+Measurements measure(const Scene& scene, const std::vector<Candidate>& picked, const SuggestSettings& settings, Progress& progress) {
+  Measurements out;
   const auto names = numeric_parameters(scene, picked);
   std::map<std::uint32_t, std::vector<StructureValues>> values;
   for (const auto& c : picked)
@@ -96,23 +103,36 @@ Population measure(const Scene& scene, const std::vector<Candidate>& picked, con
     }
     if (all && distinct.size() > 1) used.push_back(k);
   }
-  for (const auto k : used) population.names.push_back(names[k]);
-
-  std::vector<double> scale(scene.band_count(), 0.0);
+  for (const auto k : used) out.names.push_back(names[k]);
   for (const auto& c : picked) {
-    const auto t = measure_original(structure_geometry(scene, c.plant, c.structure, true), quick(settings.error), progress);
-    Specimen s;
-    s.table = t.phase;
-    for (auto& v : s.table) v /= t.area_m2;
-    const std::size_t band = t.size() * t.size();
-    for (std::size_t i = 0; i < s.table.size(); ++i) scale[i / band] += s.table[i] * s.table[i] / static_cast<double>(picked.size());
-    for (const auto k : used) s.parameters.push_back(*values[c.plant][c.structure].numbers[k]);
+    out.parameters.emplace_back();
+    for (const auto k : used) out.parameters.back().push_back(*values[c.plant][c.structure].numbers[k]);
+    out.frames.push_back(structure_facets(scene.plants[c.plant], c.structure));
+    out.frames.back().corners.clear();
+    out.tables.push_back(measure_original(structure_geometry(scene, c.plant, c.structure), quick(settings.error), progress));
+  }
+  return out;
+}
+
+/// Tables per area, turned as a representative would be, bands of equal weight.
+Population aligned(const Measurements& m, Alignment align) {
+  Population population{m.names, {}};
+  const std::size_t bands = m.tables[0].bands;
+  std::vector<double> scale(bands, 0.0);
+  for (std::size_t i = 0; i < m.tables.size(); ++i) {
+    const Mat3 back = glm::transpose(align == Alignment::frame ? m.frames[i].frame.linear : m.frames[i].upright);
+    Specimen s{transformed(m.tables[i], back).phase, m.parameters[i]};
+    const std::size_t band = s.table.size() / bands;
+    for (std::size_t k = 0; k < s.table.size(); ++k) {
+      s.table[k] /= m.tables[i].area_m2;
+      scale[k / band] += s.table[k] * s.table[k] / static_cast<double>(m.tables.size());
+    }
     population.specimens.push_back(std::move(s));
   }
   for (auto& s : population.specimens)
-    for (std::size_t i = 0; i < s.table.size(); ++i) {
-      const double square = scale[i / (s.table.size() / scale.size())];
-      s.table[i] = square > 0 ? s.table[i] / std::sqrt(square * static_cast<double>(scale.size())) : 0.0;
+    for (std::size_t k = 0; k < s.table.size(); ++k) {
+      const double square = scale[k / (s.table.size() / bands)];
+      s.table[k] = square > 0 ? s.table[k] / std::sqrt(square * static_cast<double>(bands)) : 0.0;
     }
   return population;
 }
@@ -162,7 +182,7 @@ ClassSpread class_spread(const Scene& scene, const OriginalClass& original, std:
   const std::size_t count = std::min(most, others.size());
   for (std::size_t k = 0; k < count; ++k) {
     const auto& m = members[others[count == 1 ? 0 : k * (others.size() - 1) / (count - 1)]];
-    const auto own = measure_original(structure_geometry(scene, m.structure.index, m.structure.structure, false), quick(error), progress);
+    const auto own = measure_original(structure_geometry(scene, m.structure.index, m.structure.structure), quick(error), progress);
     const auto copy = transformed(model, m.from_representative.linear);
     for (std::uint32_t b = 0; b < model.bands; ++b)
       spread.phase[b] += std::pow(phase_difference(copy, own, b), 2) / static_cast<double>(count);
@@ -190,15 +210,24 @@ PolicySuggestion suggest_policy(const Scene& scene, const SuggestSettings& setti
     if (candidates.size() < 2 * settings.least_members) continue;
     const auto picked = evenly_by_area(candidates, settings.measured);
     progress.line(fmt::format("{}: measuring {} of {}", type, picked.size(), candidates.size()));
-    const Population population = measure(scene, picked, settings, progress);
-    const auto cuts =
-        best_cuts(population.specimens, population.names.size(), settings.likeness * settings.likeness, settings.least_members);
+    const Measurements measured = measure(scene, picked, settings, progress);
+    std::vector<Cuts> cuts;
+    Population population;
+    Alignment align = Alignment::upright;
+    double apart = std::numeric_limits<double>::infinity();
+    std::string remark =
+        fmt::format("{}: {} of {} measured; rms difference of S per area from its class's mean", type, picked.size(), candidates.size());
+    for (const auto one : {Alignment::upright, Alignment::frame}) {
+      Population turned = aligned(measured, one);
+      const auto best = best_cuts(turned.specimens, turned.names.size(), settings.likeness * settings.likeness, settings.least_members);
+      const double left = within_classes(turned.specimens, best);
+      remark += fmt::format("{} {}: {:.1f} % as one class, {:.1f} % cut", one == Alignment::upright ? "" : ";", name_of(one),
+                            100 * std::sqrt(within_classes(turned.specimens, {})), 100 * std::sqrt(left));
+      if (left < apart) apart = left, cuts = best, align = one, population = std::move(turned);
+    }
     suggestion.policy.types.push_back(type_of(type, population, cuts, settings));
-    suggestion.remarks.push_back(fmt::format(
-        "{}: {} of {} measured; rms difference of the phase function per area from its class's mean {:.1f} % as one class, {:.1f} % "
-        "with this policy",
-        type, picked.size(), candidates.size(), 100 * std::sqrt(within_classes(population.specimens, {})),
-        100 * std::sqrt(within_classes(population.specimens, cuts))));
+    suggestion.policy.types.back().align = align;
+    suggestion.remarks.push_back(remark);
   }
   if (suggestion.policy.types.empty())
     throw InputError(location(scene.file),

@@ -148,9 +148,9 @@ class Classifier {
       c.name = name;
       c.likeness = Likeness::policy;
       c.tables = draft.policy->tables;
-      c.representative = choose_representative(draft.entry->representative, plants_, draft.members);
+      c.representative = choose_representative(*draft.entry, plants_, draft.members);
       const SubtreeRef model = draft.members[c.representative];
-      for (const auto& m : draft.members) c.members.push_back(member(m, stand_in(draft.entry->scale, plants_, model, m)));
+      for (const auto& m : draft.members) c.members.push_back(member(m, stand_in(*draft.entry, plants_, model, m)));
       add(std::move(c), model);
     }
   }

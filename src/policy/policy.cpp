@@ -49,6 +49,9 @@ std::string name_of(Representative representative) {
 std::string name_of(StandIn scale) {
   return scale == StandIn::area ? "area" : "size";
 }
+std::string name_of(Alignment align) {
+  return align == Alignment::upright ? "upright" : "frame";
+}
 std::string name_of(TableSettings::Basis basis) {
   return basis == TableSettings::Basis::harmonics ? "sh" : "directions";
 }
@@ -63,8 +66,8 @@ std::string policy_text(const Policy& policy) {
     if (!parameters.empty()) fmt::format_to(out, "parameters = {{ {} }}\n", fmt::join(parameters, ", "));
     if (type.converged)
       fmt::format_to(out, "converged = {{ parameter = {}, above = {} }}\n", quoted(type.converged->parameter), type.converged->above);
-    fmt::format_to(out, "representative = \"{}\"\nscale = \"{}\"\nleast_members = {}\n\n", name_of(type.representative),
-                   name_of(type.scale), type.least_members);
+    fmt::format_to(out, "representative = \"{}\"\nscale = \"{}\"\nalign = \"{}\"\nleast_members = {}\n\n", name_of(type.representative),
+                   name_of(type.scale), name_of(type.align), type.least_members);
   }
   fmt::format_to(out, "[tables]\nbasis = \"{}\"\n", name_of(policy.tables.basis));
   if (policy.tables.basis == TableSettings::Basis::harmonics) fmt::format_to(out, "order = {}\n", policy.tables.order);

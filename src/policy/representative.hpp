@@ -11,9 +11,10 @@
 namespace sunfleck {
 
 /// Row of members.
-std::uint32_t choose_representative(Representative rule, const std::vector<Subtrees>& plants, const std::vector<SubtreeRef>& members);
+std::uint32_t choose_representative(const PolicyType& entry, const std::vector<Subtrees>& plants, const std::vector<SubtreeRef>& members);
 
-/// Frame on frame, centre of area on centre of area, scaled as asked.
-Similarity stand_in(StandIn rule, const std::vector<Subtrees>& plants, const SubtreeRef& representative, const SubtreeRef& member);
+/// Turned as asked, centre of area on centre of area, scaled as asked.
+Similarity stand_in(const PolicyType& entry, const std::vector<Subtrees>& plants, const SubtreeRef& representative,
+                    const SubtreeRef& member);
 
 }  // namespace sunfleck

@@ -78,6 +78,14 @@ std::optional<double> uniform_scale(const Mat3& linear) {
   return scale;
 }
 
+Mat3 alignment(Alignment align, const Affine& frame) {
+  const Mat3 own = nearest_rotation(frame.linear);
+  if (align == Alignment::frame) return own;
+  const bool vertical = std::hypot(own[2].x, own[2].y) < 1e-6;
+  const Vec3& along = vertical ? own[0] : own[2];
+  return Affine::turn(std::atan2(along.y, along.x)).linear;
+}
+
 Mat3 nearest_rotation(const Mat3& linear) {
   return orthogonal_part(linear, glm::determinant(linear) < 0 ? -1.0 : 1.0);
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <sunfleck/core/vector.hpp>
+#include <sunfleck/policy/policy.hpp>
 
 namespace sunfleck {
 
@@ -24,5 +25,9 @@ std::optional<double> uniform_scale(const Mat3& linear);
 
 /// The rotation nearest to a linear map (in the sense of least squares); mirrors if the map does.
 Mat3 nearest_rotation(const Mat3& linear);
+
+/// The rotation that is laid on another structure's: the frame's own, or a turn about the vertical that takes +x to the azimuth of its axis
+/// (of its x where the axis is vertical).
+Mat3 alignment(Alignment align, const Affine& frame);
 
 }  // namespace sunfleck

@@ -127,6 +127,7 @@ StructureFacets structure_facets(const PlantEntry& entry, std::uint32_t structur
   const Subtrees subtrees(entry);
   StructureFacets out;
   out.corners = subtrees.facets(structure, out.optics);
+  out.upright = alignment(Alignment::upright, subtrees.frame(structure));
   out.frame = {nearest_rotation(subtrees.frame(structure).linear), subtrees.frame(structure).translation};
   return out;
 }

@@ -172,6 +172,7 @@ TEST_CASE("A policy groups structures by half-open intervals, and large ones con
   const auto result = classify(scene_of(plant, "p.toml"), policy_set(R"([type.branch]
 parameters = { leaf_count = [2, 4, 16] }
 converged = { parameter = "leaf_count", above = 50 }
+align = "frame"
 least_members = 1
 )"));
   std::vector<std::string> names;
@@ -192,6 +193,18 @@ least_members = 1
       const Mat3 turn = m.from_representative.linear / m.scale;
       const Mat3 expected = subtrees.frame(m.structure.structure).linear * glm::transpose(subtrees.frame(r.structure.structure).linear);
       for (int k = 0; k < 3; ++k) CHECK(glm::length(turn[k] - expected[k]) < 1e-12);
+    }
+  }
+  SECTION("or upright: turned about the vertical only, axis over axis") {
+    const auto upright = classify(scene_of(plant, "p.toml"), policy_set("[type.branch]\n")).classes.at(0);
+    const Subtrees subtrees(scene_of(plant).plants[0]);
+    for (const auto& m : upright.members) {
+      const Mat3 turn = m.from_representative.linear / m.scale;
+      CHECK(glm::length(turn[2] - Vec3{0, 0, 1}) < 1e-12);
+      const Vec3 axis = turn * subtrees.frame(upright.members[upright.representative].structure.structure).linear[2];
+      const Vec3 wanted = subtrees.frame(m.structure.structure).linear[2];
+      if (m.structure.structure == 1) continue;  // this one stands upright: its x counts
+      if (upright.members[upright.representative].structure.structure != 1) CHECK(std::abs(axis.x * wanted.y - axis.y * wanted.x) < 1e-12);
     }
   }
   SECTION("classes with too few members are left out, and copies below two are none") {

@@ -30,6 +30,7 @@ parameters = { leaf_count = [1, 4, 16], order = "each", cultivar = ["a", "b"], a
 converged = { parameter = "leaf_count", above = 248 }
 representative = "largest"
 scale = "size"
+align = "frame"
 least_members = 5
 [type."*"]
 [tables]
@@ -45,6 +46,7 @@ field_pixels = 1
   const PolicyType& branch = policy.types[1];
   CHECK(branch.representative == Representative::largest);
   CHECK(branch.scale == StandIn::size);
+  CHECK(branch.align == Alignment::frame);
   CHECK(branch.least_members == 5);
   CHECK(branch.converged->parameter == "leaf_count");
   CHECK(branch.converged->above == 248);
@@ -81,6 +83,7 @@ parameters = { area = [[0.5, 1], [2, 3.5]], cultivar = ["a \"b\"", "true"], leaf
 converged = { parameter = "leaf count", above = 248.5 }
 representative = "first"
 scale = "area"
+align = "upright"
 least_members = 3
 
 [tables]
@@ -121,6 +124,7 @@ TEST_CASE("Errors of policy files name line, key, what was found and what was ex
         "p.toml:2: type.branch.converged.above: found nothing; expected the value above which all structures are one class");
   CHECK(message("[type.branch]\nrepresentative = \"medioid\"\n") ==
         "p.toml:2: type.branch.representative: found \"medioid\"; expected one of medoid, first, largest; did you mean \"medoid\"?");
+  CHECK(message("[type.branch]\nalign = \"up\"\n") == "p.toml:2: type.branch.align: found \"up\"; expected one of upright, frame");
   CHECK(message("[type.branch]\nleast_members = 0\n") ==
         "p.toml:2: type.branch.least_members: found 0; expected a whole number from 1 to 1000000000");
   CHECK(message("[tables]\nbasis = \"directions\"\norder = 2\n") ==

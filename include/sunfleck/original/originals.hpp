@@ -11,7 +11,7 @@ namespace sunfleck {
 /// of the scene. Throws InputError if a group has more facets than `most_facets`.
 OriginalGeometry original_geometry(const Scene& scene, const OriginalClass& original, std::uint64_t most_facets = 1u << 24);
 
-/// Geometry of one structure of a plant; with `own_frame` in its own frame instead of the plant's.
-OriginalGeometry structure_geometry(const Scene& scene, std::uint32_t plant, std::uint32_t structure, bool own_frame);
+/// Geometry of one structure of a plant in the plant's frame.
+OriginalGeometry structure_geometry(const Scene& scene, std::uint32_t plant, std::uint32_t structure);
 
 }  // namespace sunfleck

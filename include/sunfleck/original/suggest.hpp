@@ -34,11 +34,11 @@ struct PolicySuggestion {
   std::vector<std::string> remarks;  ///< what it was derived from, per type: for comments
 };
 
-/// For each structure type with enough structures that are in no exact class: their S, in their own frames and per area, are measured; the
-/// parameter is chosen along which cutting into intervals leaves the least differences within classes, cut (each time where it helps most)
-/// until the likeness is reached or cuts no longer help; then a second parameter if it takes away another fifth. Whole plants count as a
-/// type where a scene has enough of them. All plants of the scene are taken as one species. Throws InputError if no type has enough
-/// structures.
+/// For each structure type with enough structures that are in no exact class: their S per area is measured and turned in either way of
+/// Alignment, of which the better is taken; the parameter is chosen along which cutting into intervals leaves the least differences within
+/// classes, cut (each time where it helps most) until the likeness is reached or cuts no longer help; then a second parameter if it takes
+/// away another fifth. Whole plants count as a type where a scene has enough of them. All plants of the scene are taken as one species.
+/// Throws InputError if no type has enough structures.
 PolicySuggestion suggest_policy(const Scene& scene, const SuggestSettings& settings, Progress& progress);
 
 }  // namespace sunfleck

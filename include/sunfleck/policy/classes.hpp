@@ -85,6 +85,7 @@ struct StructureFacets {
   std::vector<Triangle> corners;      ///< [n] plant frame [m], by structure (depth first), then in the order of the file
   std::vector<std::uint32_t> optics;  ///< [n] row of Scene::optics
   Affine frame;                       ///< the structure's own rigid frame -> plant frame; its axis runs along +z
+  Mat3 upright{1.0};                  ///< the same as a turn about the vertical only (Alignment::upright)
 };
 StructureFacets structure_facets(const PlantEntry& entry, std::uint32_t structure);
 

@@ -43,6 +43,12 @@ enum class StandIn {
   size   ///< at its own size
 };
 
+/// How a representative is turned to where another member is.
+enum class Alignment {
+  upright,  ///< about the vertical only, until both axes point to the same azimuth: for species whose leaves turn to the sky
+  frame     ///< frame on frame: for structures that bear their leaves alike however they lean
+};
+
 /// What is asked of structures of one type.
 struct PolicyType {
   std::string type;  ///< "*" = every type that no other entry names
@@ -50,6 +56,7 @@ struct PolicyType {
   std::optional<Convergence> converged;
   Representative representative = Representative::medoid;
   StandIn scale = StandIn::area;
+  Alignment align = Alignment::upright;
   std::uint32_t least_members = 3;  ///< a class with fewer is opened with its parent
   long line = 0;
 };
@@ -76,6 +83,7 @@ struct Policy {
 /// Names as the file has them.
 std::string name_of(Representative representative);
 std::string name_of(StandIn scale);
+std::string name_of(Alignment align);
 std::string name_of(TableSettings::Basis basis);
 
 /// The policy as a file that reads back to the same (lines aside).
