@@ -18,6 +18,7 @@
 #include <sunfleck/core/error.hpp>
 #include <sunfleck/core/names.hpp>
 #include <sunfleck/core/version.hpp>
+#include <sunfleck/view/export.hpp>
 #include <sunfleck/view/stored.hpp>
 
 #include "cli/terminal_progress.hpp"
@@ -68,6 +69,7 @@ struct Verbs {
   PlanOptions plan;
   CompareOptions compare;
   ExportOptions exporting;
+  ImportOptions importing;
   RenderOptions render;
   ViewOptions view;
   GenerateOptions generate;
@@ -137,22 +139,54 @@ void add_compare(CLI::App& verb, CompareOptions& o) {
 
 void add_export(CLI::App& verb, ExportOptions& o) {
   verb.add_option("RESULT", o.result, "result of 'sunfleck solve', HDF5")->required()->type_name("");
-  verb.add_option("-o,--output", o.output, "file to write: .ply is a lit mesh with every quantity per facet, .csv a table per organ")
+  verb.add_option("-o,--output", o.output,
+                  "file to write: .ply, .obj, .glb, .vtkhdf and .xdmf are lit meshes, .csv a table per organ, .opf a plant with its light "
+                  "as attributes")
       ->required()
       ->type_name("FILE");
   verb.add_option("--quantity", o.quantity,
-                  "mesh only: what colours show: 'colour' (natural, the default), or a map of absorbed, irradiance_front, irradiance_back, "
-                  "sunlit_front or sunlit_back")
+                  "mesh only: what colours show: 'colour' (natural, the default), or a map of one of " + joined(mesh_quantities()))
       ->type_name("NAME");
   verb.add_option("--band", o.band, "mesh only: the band of that map (default PAR, else the first)")->type_name("NAME");
   verb.add_option("--state", o.state,
                   "mesh only: the one lighting state to keep, by name or number from 1 (default all, coloured by the first)")
       ->type_name("NAME");
+  verb.add_option(
+          "--by", o.by,
+          "table only: sums of organs by plant, placement, type, name, order, layer (or layer:DEPTH, in metres), or any attribute of the "
+          "plants; several are separated by commas")
+      ->type_name("KEYS");
+  verb.add_option("--copy", o.copy, ".opf only: which copy of a plant, by its placement, such as 'coffee[3]' (default the only one)")
+      ->type_name("PLACEMENT");
+  verb.add_option("--original", o.original,
+                  ".opf only: copy this OPF as it is and add the attributes (default: write the plant from the result)")
+      ->type_name("PLANT.opf");
   verb.footer(
       "Units: irradiance and absorbed light of facets [W m^-2], absorbed light of organs [W], areas [m^2], lengths [m].\n\n"
       "Examples:\n"
       "  sunfleck export stand.h5 -o stand.ply\n"
-      "  sunfleck export stand.h5 -o organs.csv");
+      "  sunfleck export stand.h5 -o stand.glb --quantity absorbed --band NIR\n"
+      "  sunfleck export stand.h5 -o organs.csv\n"
+      "  sunfleck export stand.h5 -o profile.csv --by type,layer:0.5");
+}
+
+void add_import(CLI::App& verb, ImportOptions& o) {
+  auto& c = o.choice;
+  verb.add_option("FILE", c.files, "one .ops (AMAP); or one .can with .opt (a band each), .light and .8 (CARIBU)")
+      ->required()
+      ->type_name("");
+  verb.add_option("-o,--output", c.output, "scene file to write; it names the files where they are")->required()->type_name("SCENE.toml");
+  verb.add_option("--unit", c.unit, "length unit of .can and .8 (default m), or of an .ops' plants (default cm): m, cm, mm, inch, foot")
+      ->type_name("UNIT");
+  verb.add_flag("--degrees", c.degrees, ".ops only: its angles are degrees (default radians)");
+  verb.add_flag("--finite", c.finite, ".ops only: the terrain does not repeat");
+  verb.add_option("--scene", c.scene_id, ".ops with several scenes: the sceneId to take")->type_name("N");
+  verb.add_flag("--soil", c.soil, ".can only: a soil of the pattern's size at the lowest point, with the reflectance of the .opt files");
+  verb.add_flag("--light-states", c.light_states, ".light only: every direction a state of its own, also where they stand for a known sky");
+  verb.footer(
+      "Examples:\n"
+      "  sunfleck import orchard.ops -o orchard.toml\n"
+      "  sunfleck import maize.can par.opt nir.opt sky.light maize.8 --unit cm --soil -o maize.toml");
 }
 
 void add_render(CLI::App& verb, RenderOptions& o) {
@@ -323,6 +357,7 @@ class Program {
     add("plan", "what a solve would do and leave out, its memory and work, without solving", add_plan, verbs_.plan, verb_plan);
     add("compare", "the error of one result against another", add_compare, verbs_.compare, verb_compare);
     add("export", "a result as a lit mesh or a table", add_export, verbs_.exporting, verb_export);
+    add("import", "a scene of AMAP (.ops) or CARIBU (.can, .opt, .light, .8) as a scene file", add_import, verbs_.importing, verb_import);
     add("render", "a picture of a result", add_render, verbs_.render, verb_render);
     add("view", "an interactive viewer of a result, in the browser", add_view, verbs_.view, verb_view);
     add("info", "what a result, plant, species or scene file holds", add_info, verbs_.info, verb_info);

@@ -272,6 +272,7 @@ class OpfReader {
         attributes.emplace_back(attribute_index_(key), value);
         if (key[0] == 'i') name += fmt::format("_{}", value);
       }
+    if (plant_.structures[structure].parent != no_parent) attributes.emplace_back(attribute_index_("link"), std::string(node.name()));
   }
 
   /// "NA", "NaN" and an empty element mean that the plant has no such value: the attribute is left out.

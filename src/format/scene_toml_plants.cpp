@@ -62,7 +62,7 @@ std::vector<std::string> optics_names(const Scene& scene) {
   return names;
 }
 
-/// Optics of every shape: by the name of its structure, the structure's type, its material, or "*", in this order.
+/// Optics of every shape: by the name of its structure, "type/material", the structure's type, its material, or "*", in this order.
 class OpticsMap {
  public:
   OpticsMap(const TomlValue& table, const Scene& scene) : table_(table) {
@@ -83,14 +83,16 @@ class OpticsMap {
   std::vector<std::uint32_t> of_shapes(const Plant& plant, Scene& scene) {
     std::vector<std::uint32_t> rows;
     std::map<std::string, std::string> missing;  // type and material -> the first structure of them
-    std::set<std::string> names;
+    std::set<std::string> names, pairs;
     for (const auto& shape : plant.shapes) {
       const auto& structure = plant.structures[shape.structure];
       const std::string& type = plant.types[structure.type];
       const std::string& material = plant.materials[shape.material];
       names.insert({structure.name, type, material});
+      const std::string pair = material.empty() ? std::string{} : type + "/" + material;
+      if (!pair.empty()) pairs.insert(pair);
       const Entry* entry = nullptr;
-      for (const auto* name : {&structure.name, &type, &material})
+      for (const auto* name : {&structure.name, &pair, &type, &material})
         if (!entry) entry = named(*name);
       if (!entry) entry = rest_;
       if (entry) {
@@ -102,7 +104,7 @@ class OpticsMap {
     }
     if (!missing.empty())
       table_.fail("no optics for " + listed(missing), "a key that is the type, material or name of each, or \"*\" for the rest");
-    refuse_misspelt(plant, names, scene);
+    refuse_misspelt(plant, names, pairs, scene);
     return rows;
   }
 
@@ -118,12 +120,12 @@ class OpticsMap {
   }
 
   /// A key that names nothing in the plant is an error if it looks like a misspelt name that no key names, else worth a note.
-  void refuse_misspelt(const Plant& plant, const std::set<std::string>& names, Scene& scene) const {
+  void refuse_misspelt(const Plant& plant, const std::set<std::string>& names, const std::set<std::string>& pairs, Scene& scene) const {
     std::vector<std::string> unnamed;
     for (const auto& name : names)
       if (!name.empty() && !entries_.count(name)) unnamed.push_back(name);
     for (const auto& [key, entry] : entries_) {
-      if (key == "*" || names.count(key)) continue;
+      if (key == "*" || names.count(key) || pairs.count(key)) continue;
       const std::string what = fmt::format("a key that is no structure name, type or material of {}", plant.file);
       const std::string nearest = nearest_name(key, unnamed);
       if (!nearest.empty()) entry.value.fail(what, "one that is; did you mean \"" + nearest + "\"?");

@@ -1,6 +1,8 @@
 #include <sunfleck/plant/describe.hpp>
 
 #include <algorithm>
+#include <array>
+#include <cctype>
 #include <iterator>
 
 #include <fmt/format.h>
@@ -65,6 +67,17 @@ std::string describe_plant(const PlantSummary& s) {
   if (!named.empty()) fmt::format_to(out, "materials  {}\n", fmt::join(named, ", "));
   if (!s.attributes.empty()) fmt::format_to(out, "attributes {}\n", fmt::join(s.attributes, ", "));
   return text;
+}
+
+std::uint32_t branching_order(const Plant& plant, std::uint32_t structure) {
+  static const std::array axes{"axis", "branch", "trunk", "stem", "tiller"};
+  std::uint32_t order = 0;
+  for (auto s = structure; s != no_parent; s = plant.structures[s].parent) {
+    std::string type = plant.types[plant.structures[s].type];
+    for (auto& c : type) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    order += std::any_of(axes.begin(), axes.end(), [&](const char* name) { return type == name; });
+  }
+  return order;
 }
 
 }  // namespace sunfleck

@@ -4,6 +4,7 @@
 #include <cctype>
 #include <cmath>
 
+#include <sunfleck/plant/describe.hpp>
 #include <sunfleck/policy/classes.hpp>
 
 namespace sunfleck {
@@ -25,13 +26,6 @@ ParameterValue of_attribute(const AttributeValue& value) {
   if (const auto* i = std::get_if<std::int64_t>(&value)) return number(static_cast<double>(*i), true);
   if (const auto* d = std::get_if<double>(&value)) return number(*d, *d == std::floor(*d));
   return {{}, std::get<std::string>(value), false};
-}
-
-double branching_order(const Plant& plant, std::uint32_t structure) {
-  double order = 0;
-  for (auto s = structure; s != no_parent; s = plant.structures[s].parent)
-    if (is_one_of(plant.types[plant.structures[s].type], {"axis", "branch", "trunk", "stem", "tiller"})) ++order;
-  return order;
 }
 
 double extent_along_axis(const Subtrees& subtrees, std::uint32_t structure) {

@@ -147,6 +147,7 @@ SUNFLECK_INSTANTIATE(double)
 SUNFLECK_INSTANTIATE(std::uint8_t)
 SUNFLECK_INSTANTIATE(std::uint32_t)
 SUNFLECK_INSTANTIATE(std::uint64_t)
+SUNFLECK_INSTANTIATE(std::int64_t)
 #undef SUNFLECK_INSTANTIATE
 
 std::vector<std::string> DatasetReader::strings(const std::string& name) const {

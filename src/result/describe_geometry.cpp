@@ -1,5 +1,6 @@
 #include <map>
 #include <unordered_map>
+#include <variant>
 
 #include "result/describe_scene.hpp"
 
@@ -25,6 +26,36 @@ struct Meshes {
     for (const auto& t : mesh.triangles) triangles.insert(triangles.end(), t.begin(), t.end());
     first_vertex.push_back(vertices.size() / 3);
     first_triangle.push_back(triangles.size() / 3);
+  }
+};
+
+/// Attributes of the structures of all models, as in our plant files (docs/formats-plants.md).
+struct Attributes {
+  std::vector<std::string> names, texts;
+  std::map<std::string, std::uint32_t> name_rows, text_rows;
+  std::vector<std::uint32_t> structure, key;
+  std::vector<std::uint8_t> kind;
+  std::vector<std::int64_t> whole;
+  std::vector<double> number;
+
+  static std::uint32_t row(const std::string& text, std::vector<std::string>& table, std::map<std::string, std::uint32_t>& rows) {
+    const auto [place, added] = rows.try_emplace(text, static_cast<std::uint32_t>(table.size()));
+    if (added) table.push_back(text);
+    return place->second;
+  }
+
+  void add(const Plant& plant, std::size_t first_structure) {
+    for (std::size_t s = 0; s < plant.structures.size(); ++s)
+      for (const auto& [name, value] : plant.structures[s].attributes) {
+        structure.push_back(static_cast<std::uint32_t>(first_structure + s));
+        key.push_back(row(plant.attribute_names[name], names, name_rows));
+        kind.push_back(static_cast<std::uint8_t>(value.index()));
+        whole.push_back(0), number.push_back(0.0);
+        if (const auto* truth = std::get_if<bool>(&value)) whole.back() = *truth;
+        if (const auto* i = std::get_if<std::int64_t>(&value)) whole.back() = *i;
+        if (const auto* d = std::get_if<double>(&value)) number.back() = *d;
+        if (const auto* t = std::get_if<std::string>(&value)) whole.back() = row(*t, texts, text_rows);
+      }
   }
 };
 
@@ -62,6 +93,7 @@ void write_geometry(OutputFile& file, ArrayWriter& arrays, const Scene& scene, c
   std::vector<std::uint32_t> shape_mesh, shape_first, shape_count, shape_structure, structure_parent, structure_type, plant_model,
       plant_optics;
   std::vector<double> shape_placement, copy_map;
+  Attributes attributes;
   std::vector<std::uint64_t> model_first_shape{0}, model_first_structure{0}, plant_first_optics{0}, copy_first_facet;
 
   for (const auto& entry : scene.plants) {
@@ -77,6 +109,7 @@ void write_geometry(OutputFile& file, ArrayWriter& arrays, const Scene& scene, c
         shape_structure.push_back(s.structure);
         push(shape_placement, s.placement);
       }
+      attributes.add(plant, structure_parent.size());
       for (const auto& s : plant.structures) {
         const auto [row, fresh] = type_rows.try_emplace(plant.types[s.type], static_cast<std::uint32_t>(types.size()));
         if (fresh) types.push_back(plant.types[s.type]);
@@ -113,6 +146,15 @@ void write_geometry(OutputFile& file, ArrayWriter& arrays, const Scene& scene, c
   arrays.write(g, "structure_parent", structure_parent, "structure of the model, 4294967295 = none");
   arrays.write(g, "structure_type", structure_type, "row of structure_type_name");
   arrays.write_strings(g, "structure_type_name", types);
+  if (!attributes.structure.empty()) {
+    arrays.write_strings(g, "attribute_name", attributes.names);
+    if (!attributes.texts.empty()) arrays.write_strings(g, "attribute_text", attributes.texts);
+    arrays.write(g, "attribute_structure", attributes.structure, "row of structure_*");
+    arrays.write(g, "attribute_key", attributes.key, "row of attribute_name");
+    arrays.write(g, "attribute_kind", attributes.kind, "0 truth, 1 whole number, 2 number, 3 text");
+    arrays.write(g, "attribute_whole", attributes.whole, "as the plant file has it; of a text, row of attribute_text");
+    arrays.write(g, "attribute_number", attributes.number, "as the plant file has it");
+  }
   arrays.write(g, "model_first_shape", model_first_shape, "row of shape_*");
   arrays.write(g, "model_first_structure", model_first_structure, "row of structure_*");
   arrays.write_strings(g, "plant_name", plant_names);

@@ -59,6 +59,40 @@ std::vector<Mesh> read_meshes(const DatasetReader& reader) {
   return meshes;
 }
 
+/// Attributes of structures, where the file has them (older ones do not), by row of structure_*.
+struct StoredAttributes {
+  std::vector<std::string> names;
+  std::vector<std::vector<std::pair<std::uint32_t, AttributeValue>>> of_structure;
+
+  StoredAttributes(const DatasetReader& reader, std::size_t structures) {
+    if (!reader.has(g + "attribute_structure")) return;
+    names = reader.strings(g + "attribute_name");
+    const auto texts = reader.has(g + "attribute_text") ? reader.strings(g + "attribute_text") : std::vector<std::string>{};
+    const auto structure = reader.all<std::uint32_t>(g + "attribute_structure");
+    for (const char* name : {"attribute_key", "attribute_kind", "attribute_whole", "attribute_number"})
+      reader.expect(g + name, {structure.size()});
+    const auto key = reader.all<std::uint32_t>(g + "attribute_key");
+    const auto kind = reader.all<std::uint8_t>(g + "attribute_kind");
+    const auto whole = reader.all<std::int64_t>(g + "attribute_whole");
+    const auto number = reader.all<double>(g + "attribute_number");
+    expect_below(reader, g + "attribute_structure", structure, structures);
+    expect_below(reader, g + "attribute_key", key, names.size());
+    expect_below(reader, g + "attribute_kind", kind, std::variant_size_v<AttributeValue>);
+    of_structure.resize(structures);
+    for (std::size_t i = 0; i < structure.size(); ++i) {
+      AttributeValue value = whole[i] != 0;
+      if (kind[i] == 1) value = whole[i];
+      if (kind[i] == 2) value = number[i];
+      if (kind[i] == 3) {
+        if (whole[i] < 0 || static_cast<std::size_t>(whole[i]) >= texts.size())
+          reader.fail(g + "attribute_whole", "text " + std::to_string(whole[i]), "a row below " + std::to_string(texts.size()));
+        value = texts[static_cast<std::size_t>(whole[i])];
+      }
+      of_structure[structure[i]].emplace_back(key[i], std::move(value));
+    }
+  }
+};
+
 std::vector<std::shared_ptr<const Plant>> read_models(const DatasetReader& reader, const std::vector<Mesh>& meshes) {
   const auto mesh = reader.all<std::uint32_t>(g + "shape_mesh");
   const std::size_t shapes = mesh.size();
@@ -76,16 +110,19 @@ std::vector<std::shared_ptr<const Plant>> read_models(const DatasetReader& reade
   if (model_shape.size() != model_structure.size())
     reader.fail(g + "model_first_structure", std::to_string(model_structure.size()) + " rows", std::to_string(model_shape.size()));
 
+  const StoredAttributes attributes(reader, parent.size());
   std::vector<std::shared_ptr<const Plant>> models;
   for (std::size_t m = 0; m + 1 < model_shape.size(); ++m) {
     auto plant = std::make_shared<Plant>();
     plant->file = location(reader.path(), 0, "/geometry");
     plant->types = types;
     plant->materials = {""};
+    plant->attribute_names = attributes.names;
     for (auto s = model_structure[m]; s < model_structure[m + 1]; ++s) {
       Structure row;
       row.parent = parent[s];
       row.type = type[s];
+      if (!attributes.of_structure.empty()) row.attributes = attributes.of_structure[s];
       plant->structures.push_back(row);
     }
     std::uint32_t low = 0xffffffffu, high = 0;  // the model's own meshes

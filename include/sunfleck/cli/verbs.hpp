@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <sunfleck/core/progress.hpp>
+#include <sunfleck/format/import_scene.hpp>
 
 namespace sunfleck {
 
@@ -37,6 +38,9 @@ int verb_compare(const CompareOptions& options, Progress& progress);
 struct ExportOptions {
   std::string result, output;
   std::optional<std::string> quantity, band, state;
+  std::optional<std::string> by;        ///< tables: keys that organs are summed by
+  std::optional<std::string> copy;      ///< .opf: which copy, by its placement
+  std::optional<std::string> original;  ///< .opf: the file that gains attributes
 };
 int verb_export(const ExportOptions& options, Progress& progress);
 
@@ -95,5 +99,10 @@ struct PolicyOptions {
   int threads = 0;
 };
 int verb_policy(const PolicyOptions& options, Progress& progress);
+
+struct ImportOptions {
+  ImportChoice choice;
+};
+int verb_import(const ImportOptions& options, Progress& progress);
 
 }  // namespace sunfleck

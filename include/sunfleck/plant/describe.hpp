@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -37,5 +38,9 @@ PlantSummary summarize_plant(const Plant& plant);
 /// The summary as a few lines of text, with a final line end.
 std::string describe_plant(const Plant& plant);
 std::string describe_plant(const PlantSummary& summary);
+
+/// Order of branching: axis-like structures (types axis, branch, trunk, stem, tiller, in any case) from the plant down to a structure,
+/// itself included.
+std::uint32_t branching_order(const Plant& plant, std::uint32_t structure);
 
 }  // namespace sunfleck

@@ -22,7 +22,7 @@ struct ResultGeometry {
   };
   struct Entry {
     std::string name;
-    std::shared_ptr<const Plant> plant;       ///< meshes, shapes, structures with parent and type; no names or attributes
+    std::shared_ptr<const Plant> plant;       ///< meshes, shapes, structures with parent, type and attributes; no names or frames
     std::vector<std::uint32_t> shape_optics;  ///< per shape, row of the materials
     std::vector<std::size_t> shape_facet;     ///< [shapes + 1] first facet of each shape within a copy
   };

@@ -52,7 +52,7 @@ class Result {
   /// Empty if there is no such dataset.
   std::vector<std::size_t> shape(const std::string& dataset) const;
 
-  /// Rows [first, first + count) of a dataset [rows, ...]; T is float, double, std::uint8_t, std::uint32_t or std::uint64_t.
+  /// Rows [first, first + count) of a dataset [rows, ...]; T is float, double, std::uint8_t, std::uint32_t, std::uint64_t or std::int64_t.
   template <class T>
   std::vector<T> rows(const std::string& dataset, std::size_t first, std::size_t count) const;
   /// The same of one state of a dataset [states, rows, ...].

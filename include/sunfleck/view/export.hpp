@@ -55,4 +55,13 @@ void export_xdmf(const Result& result, const std::string& file, const MeshChoice
 /// umol m^-2 s^-1 have umol_s and umol in the place of W and J.
 void export_csv(const Result& result, const std::string& file, Progress& progress);
 
+/// One row a group of organs that share the values of the keys in `by`, separated by commas: "plant", "placement", "type", "name" (of the
+/// organ), "order" (an attribute of that name, else branching_order()), any attribute of the plant files (an organ's own, else that of the
+/// nearest structure above it), and "layer" (twenty between the lowest and the highest plant facet) or "layer:0.5" (layers of .5 m from
+/// multiples of it). Columns: the keys, the number of organs, area_m2, and those of export_csv: absorbed summed, the others weighted by
+/// area. With layers, which hold plant facets by the height of their centroids, the key is z_low_m,z_high_m and facets are counted.
+/// Memory grows with the number of groups; with layers beside other keys also by 4 bytes an organ and key. Throws UsageError for keys that
+/// are none, InputError where the file does not keep what is asked.
+void export_groups(const Result& result, const std::string& file, const std::string& by, Progress& progress);
+
 }  // namespace sunfleck
