@@ -66,7 +66,12 @@ struct GlbMesh {
 class GlbWriter {
  public:
   GlbWriter(const Result& result, const MeshChoice& choice, Progress& progress)
-      : result_(result), choice_(choice), progress_(progress), mesh_(result), colours_(result, mesh_.geometry(), choice, progress) {}
+      : result_(result),
+        choice_(choice),
+        progress_(progress),
+        mesh_(result),
+        colours_(result, mesh_.geometry(), choice, progress),
+        placements_(result.strings("names/placement")) {}
 
   void write(const std::string& path) {
     group();
@@ -265,8 +270,8 @@ class GlbWriter {
 
   std::string name_of(const GlbMesh& m) const {
     if (m.shared) return fmt::format("{} x {}", geometry().plants[geometry().copies[m.copies[0]].plant].name, m.copies.size());
-    const std::string first = placement_name(result_, geometry(), m.copies.front());
-    return m.copies.size() == 1 ? first : first + " to " + placement_name(result_, geometry(), m.copies.back());
+    const std::string first = placement_name(result_, geometry(), placements_, m.copies.front());
+    return m.copies.size() == 1 ? first : first + " to " + placement_name(result_, geometry(), placements_, m.copies.back());
   }
 
   void write_mesh(ReplacedFile& out, const GlbMesh& m) {
@@ -356,6 +361,7 @@ class GlbWriter {
   Progress& progress_;
   LitMesh mesh_;
   LitColours colours_;
+  std::vector<std::string> placements_;
   std::vector<GlbMesh> meshes_;
   Vec3 centre_{0.0};
   std::size_t done_ = 0;

@@ -33,12 +33,11 @@ void LitMesh::for_each_batch(Progress& progress, double begin, double end, const
   });
 }
 
-std::string placement_name(const Result& result, const ResultGeometry& geometry, std::size_t copy) {
+std::string placement_name(const Result& result, const ResultGeometry& geometry, const std::vector<std::string>& names, std::size_t copy) {
   if (copy == geometry.copies.size()) return "ground";
   const std::size_t facet = geometry.copies[copy].first_facet;
   const auto organ = result.facet_organs(facet, 1).front();
   const auto row = result.rows<std::uint32_t>("organs/placement", organ, 1).front();
-  const auto names = result.strings("names/placement");
   if (row >= names.size())
     throw InputError(location(result.file(), 0, "organs/placement"), "row " + std::to_string(row),
                      "a row below " + std::to_string(names.size()));

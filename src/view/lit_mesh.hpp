@@ -30,7 +30,7 @@ class LitMesh {
   OrganPatches patches_;
 };
 
-/// "tile[3]/coffee[1]", or "ground" for copy = number of copies.
-std::string placement_name(const Result& result, const ResultGeometry& geometry, std::size_t copy);
+/// "tile[3]/coffee[1]", or "ground" for copy = number of copies; `names` is /names/placement.
+std::string placement_name(const Result& result, const ResultGeometry& geometry, const std::vector<std::string>& names, std::size_t copy);
 
 }  // namespace sunfleck

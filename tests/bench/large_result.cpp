@@ -36,6 +36,7 @@ int main(int argc, char** argv) {
   LightState noon;
   noon.name = "noon";
   noon.duration_s = 3600;
+  noon.sun = Sun{{0, 0, 1}, {400, 300}, 0.53};
   scene.states = {noon};
   scene.optics.push_back(uniform_optics("leaf", {0.1, 0.45}, {0.05, 0.4}));
   std::vector<Placement> places;
@@ -45,29 +46,27 @@ int main(int argc, char** argv) {
   PlantEntry entry{"tree", plant, std::vector<std::uint32_t>(leaves, 0), "", places};
   scene.plants.push_back(entry);
 
-  const FacetScene facets = expand(scene);
-  const std::size_t n = facets.size(), piece = 100000;
+  const PlacedScene copies_in_world = place(scene);
+  const PlantFacets own = plant_facets(scene.plants[0]);
   {
-    ResultWriter writer(argv[1], scene, facets, scene.output, "bench", "flat");
-    std::vector<float> irradiance, sunlit;
-    for (std::size_t first = 0; first < n; first += piece) {
-      const std::size_t count = std::min(piece, n - first);
-      irradiance.assign(count * 4, 0), sunlit.assign(count * 2, 0);
-      for (std::size_t i = 0; i < count; ++i) {
-        const Vec3& p = facets.corners[first + i][0];
+    ResultWriter writer(argv[1], scene, copies_in_world, scene.output, "bench", "flat");
+    std::vector<float> irradiance(own.size() * 4), sunlit(own.size() * 2);
+    for (const auto& copy : copies_in_world.copies) {
+      for (std::size_t i = 0; i < own.size(); ++i) {
+        const Vec3 p = copy.map.point(own.corners[i][0]);
         const auto light = static_cast<float>(100 + 50 * std::sin(p.x) + 80 * p.z);
-        irradiance[4 * i] = light, irradiance[4 * i + 1] = 0.8f * light, irradiance[4 * i + 2] = 0.3f * light,
-                       irradiance[4 * i + 3] = 0.4f * light;
+        irradiance[4 * i] = light, irradiance[4 * i + 1] = 0.8f * light;
+        irradiance[4 * i + 2] = 0.3f * light, irradiance[4 * i + 3] = 0.4f * light;
         sunlit[2 * i] = p.z > 2.5 ? 1.0f : 0.25f;
       }
-      writer.rows({first, count, irradiance.data(), sunlit.data(), nullptr});
+      writer.rows({copy.first_facet, own.size(), irradiance.data(), sunlit.data(), nullptr});
     }
     SolveReport report;
     report.method = "flat";
     report.balance = {{{1, 1, 0, 0}, {1, 1, 0, 0}}};
     writer.finish(report);
   }
-  std::printf("%zu facets, %zu organs, %zu copies; peak %.0f MiB\n", n, facets.organs.size(), copies,
-              static_cast<double>(peak_resident_bytes()) / 1048576.0);
+  std::printf("%zu facets, %zu organs, %zu copies; peak %.0f MiB\n", static_cast<std::size_t>(copies_in_world.facets),
+              static_cast<std::size_t>(copies_in_world.organs), copies, static_cast<double>(peak_resident_bytes()) / 1048576.0);
   return 0;
 }

@@ -25,7 +25,8 @@ struct Stored {
     set_attribute(*plant, 3, "rank", std::int64_t{9});
     scene.plants[0].plant = plant;
     facets = expand(scene);
-    ResultWriter writer(folder / "r.h5", scene, facets, scene.output, "0.1.0", "flat");
+    const PlacedScene copies = place(scene);
+    ResultWriter writer(folder / "r.h5", scene, copies, scene.output, "0.1.0", "flat");
     Values(facets).send(writer, 1000);
     writer.finish(small_report());
   }
