@@ -26,7 +26,7 @@ std::string attribute_name(const std::string& text) {
 }
 
 /// Names of placed copies; the ground's placement is none.
-std::uint32_t placement_row(const Result& result, const ResultGeometry& geometry, const OrganNames& names,
+std::uint32_t placement_row(const Result& result, const ResultGeometry& geometry, const OrganTexts& names,
                             const std::optional<std::string>& placement) {
   std::vector<std::string> copies = names.placements;
   if (!geometry.ground.triangles.empty()) copies.erase(std::remove(copies.begin(), copies.end(), "ground"), copies.end());
@@ -49,7 +49,7 @@ std::uint32_t placement_row(const Result& result, const ResultGeometry& geometry
 CopyValues copy_values(const Result& result, const ResultGeometry& geometry, const std::optional<std::string>& placement,
                        Progress& progress) {
   const KeptValues kept = kept_values(result, "organs");
-  const OrganNames names(result);
+  const OrganTexts names(result);
   const std::uint32_t wanted = placement_row(result, geometry, names, placement);
   const std::size_t m = result.organ_count(), bands = result.bands().size(), states = result.states().size();
 
@@ -61,13 +61,13 @@ CopyValues copy_values(const Result& result, const ResultGeometry& geometry, con
   for (std::size_t first = 0; first < m; first += rows_at_once) {
     progress.check();
     const std::size_t count = std::min(rows_at_once, m - first);
-    const OrganRows organs(result, names, first, count);
+    const OrganBlock organs(result, names, first, count);
     if (std::find(organs.placement.begin(), organs.placement.end(), wanted) == organs.placement.end()) {
       if (found) break;  // organs of a copy follow one another
       continue;
     }
     const auto area = result.rows<float>("organs/area", first, count);
-    std::vector<ValueRows> values;
+    std::vector<LightBlock> values;
     for (std::size_t s = 0; s < states; ++s) values.emplace_back(result, "organs", kept, s, first, count);
     for (std::size_t i = 0; i < count; ++i) {
       if (organs.placement[i] != wanted) continue;

@@ -20,7 +20,7 @@ constexpr std::size_t rows_at_once = 16384;
 void export_csv(const Result& result, const std::string& file, Progress& progress) {
   const std::size_t m = result.organ_count(), bands = result.bands().size(), states = result.states().size();
   const KeptValues kept = kept_values(result, "organs");
-  const OrganNames names(result);
+  const OrganTexts names(result);
 
   ReplacedFile out(file);
   fmt::memory_buffer text;
@@ -30,9 +30,9 @@ void export_csv(const Result& result, const std::string& file, Progress& progres
   for (std::size_t first = 0; first < m; first += rows_at_once) {
     progress.check();
     const std::size_t count = std::min(rows_at_once, m - first);
-    const OrganRows organs(result, names, first, count);
+    const OrganBlock organs(result, names, first, count);
     const auto area = result.rows<float>("organs/area", first, count);
-    std::vector<ValueRows> values;
+    std::vector<LightBlock> values;
     for (std::size_t s = 0; s < states; ++s) values.emplace_back(result, "organs", kept, s, first, count);
     for (std::size_t i = 0; i < count; ++i) {
       fmt::format_to(put, "{},{},{},{},{},{}", first + i, csv_field(names.plants[organs.plant[i]]),

@@ -41,7 +41,7 @@ class Sums {
     sums_[row * stride_ + 1] += area;
   }
   /// Row i of values; `power` is the area by which absorbed is still to be multiplied (facets), or 1 (organs).
-  void add(std::size_t row, std::size_t state, const ValueRows& values, std::size_t i, double area, double power) {
+  void add(std::size_t row, std::size_t state, const LightBlock& values, std::size_t i, double area, double power) {
     double* s = &sums_[row * stride_ + 2 + state * (3 * bands_ + 2)];
     for (std::size_t b = 0; b < bands_ && kept_.absorbed; ++b) s[b] += power * values.absorbed[i * bands_ + b];
     for (std::size_t k = 0; k < 2 * bands_ && kept_.irradiance; ++k) s[bands_ + k] += area * values.irradiance[i * 2 * bands_ + k];
@@ -85,7 +85,7 @@ class GroupTable {
       begin = end + 1;
     }
     for (std::size_t k = 0; k < keys_.size(); ++k)
-      if (keys_[k].kind == KeyKind::layer) {
+      if (keys_[k].kind == GroupKeyKind::layer) {
         if (layer_) throw UsageError("--by: found two layers; expected one");
         layer_ = k;
       }
@@ -141,7 +141,7 @@ class GroupTable {
     for (std::size_t first = 0; first < m; first += rows_at_once) {
       progress_.check();
       const std::size_t count = std::min(rows_at_once, m - first);
-      const OrganRows organs(result_, keys.names(), first, count);
+      const OrganBlock organs(result_, keys.names(), first, count);
       const auto area = result_.rows<float>("organs/area", first, count);
       std::vector<std::vector<std::uint32_t>> columns;
       for (std::size_t k = 0; k < keys_.size(); ++k) columns.push_back(keys.rows(k, organs));
@@ -153,7 +153,7 @@ class GroupTable {
         sums.count(group[i], area[i]);
       }
       for (std::size_t s = 0; s < result_.states().size(); ++s) {
-        const ValueRows values(result_, "organs", kept, s, first, count);
+        const LightBlock values(result_, "organs", kept, s, first, count);
         for (std::size_t i = 0; i < count; ++i) sums.add(group[i], s, values, i, area[i], 1.0);
       }
       progress_.fraction("export", static_cast<double>(first + count) / static_cast<double>(m));
@@ -200,7 +200,7 @@ class GroupTable {
     std::vector<std::vector<std::uint32_t>> columns(keys_.size());
     if (keys_.size() > 1)
       for (std::size_t first = 0; first < result_.organ_count(); first += rows_at_once) {
-        const OrganRows organs(result_, keys.names(), first, std::min(rows_at_once, result_.organ_count() - first));
+        const OrganBlock organs(result_, keys.names(), first, std::min(rows_at_once, result_.organ_count() - first));
         for (std::size_t k = 0; k < keys_.size(); ++k) {
           if (layer_ == k) continue;
           const auto rows = keys.rows(k, organs);
@@ -222,7 +222,7 @@ class GroupTable {
         sums.count(group[i], area[i]);
       }
       for (std::size_t s = 0; s < result_.states().size(); ++s) {
-        const ValueRows values(result_, "facets", kept, s, first, count);
+        const LightBlock values(result_, "facets", kept, s, first, count);
         for (std::size_t i = 0; i < count; ++i) sums.add(group[i], s, values, i, area[i], area[i]);
       }
     });
@@ -251,7 +251,7 @@ class GroupTable {
 
   const Result& result_;
   Progress& progress_;
-  std::vector<Key> keys_;
+  std::vector<GroupKey> keys_;
   std::optional<std::size_t> layer_;  ///< which key
   double low_ = 0, depth_ = 1;        ///< of layers [m]
 };

@@ -13,10 +13,10 @@
 
 namespace sunfleck {
 
-Key key_of(const std::string& word) {
-  static const std::map<std::string, KeyKind> known{{"plant", KeyKind::plant}, {"placement", KeyKind::placement},
-                                                    {"type", KeyKind::type},   {"name", KeyKind::name},
-                                                    {"order", KeyKind::order}, {"layer", KeyKind::layer}};
+GroupKey key_of(const std::string& word) {
+  static const std::map<std::string, GroupKeyKind> known{{"plant", GroupKeyKind::plant}, {"placement", GroupKeyKind::placement},
+                                                         {"type", GroupKeyKind::type},   {"name", GroupKeyKind::name},
+                                                         {"order", GroupKeyKind::order}, {"layer", GroupKeyKind::layer}};
   const auto at = known.find(word);
   if (at != known.end()) return {word, at->second, 0};
   if (word.rfind("layer:", 0) == 0) {
@@ -25,10 +25,10 @@ Key key_of(const std::string& word) {
     const auto [rest, error] = std::from_chars(begin, end, depth);
     if (error != std::errc{} || rest != end || !(depth > 0) || !std::isfinite(depth))
       throw UsageError(fmt::format("--by: found '{}'; expected a depth above zero in metres, such as 'layer:0.5'", word));
-    return {"layer", KeyKind::layer, depth};
+    return {"layer", GroupKeyKind::layer, depth};
   }
   if (word.empty()) throw UsageError("--by: found an empty name; expected plant, type, layer, order or an attribute, separated by commas");
-  return {word, KeyKind::attribute, 0};
+  return {word, GroupKeyKind::attribute, 0};
 }
 
 std::uint32_t KeyTable::row(double number) {
@@ -84,20 +84,20 @@ namespace {
 
 }  // namespace
 
-OrganKeys::OrganKeys(const Result& result, const std::vector<Key>& keys)
+OrganKeys::OrganKeys(const Result& result, const std::vector<GroupKey>& keys)
     : file_(result.file()), keys_(keys), names_(result), tables_(keys.size()) {
-  const bool structures =
-      std::any_of(keys.begin(), keys.end(), [](const Key& k) { return k.kind == KeyKind::order || k.kind == KeyKind::attribute; });
+  const bool structures = std::any_of(keys.begin(), keys.end(),
+                                      [](const GroupKey& k) { return k.kind == GroupKeyKind::order || k.kind == GroupKeyKind::attribute; });
   if (structures) find_structures(result);
 }
 
-std::vector<std::uint32_t> OrganKeys::rows(std::size_t key, const OrganRows& organs) {
+std::vector<std::uint32_t> OrganKeys::rows(std::size_t key, const OrganBlock& organs) {
   std::vector<std::uint32_t> out(organs.count);
   for (std::size_t i = 0; i < organs.count; ++i) out[i] = row(key, organs, i);
   return out;
 }
 
-std::uint32_t OrganKeys::row(std::size_t key, const OrganRows& organs, std::size_t i) {
+std::uint32_t OrganKeys::row(std::size_t key, const OrganBlock& organs, std::size_t i) {
   const auto named = [&](std::uint32_t at, const std::vector<std::string>& texts) {
     auto& cache = named_[key];
     if (cache.empty()) cache.assign(texts.size(), no_parent);
@@ -105,13 +105,13 @@ std::uint32_t OrganKeys::row(std::size_t key, const OrganRows& organs, std::size
     return cache[at];
   };
   switch (keys_[key].kind) {
-    case KeyKind::plant:
+    case GroupKeyKind::plant:
       return named(organs.plant[i], names_.plants);
-    case KeyKind::placement:
+    case GroupKeyKind::placement:
       return named(organs.placement[i], names_.placements);
-    case KeyKind::type:
+    case GroupKeyKind::type:
       return named(organs.type[i], names_.types);
-    case KeyKind::name:
+    case GroupKeyKind::name:
       return named(organs.name[i], names_.names);
     default:
       break;
@@ -132,8 +132,8 @@ void OrganKeys::find_structures(const Result& result) {
     for (std::uint32_t e = 0; e < geometry.plants.size(); ++e)
       if (geometry.plants[e].name == names_.plants[p]) entry_of_plant_[p] = e;
   for (std::size_t k = 0; k < keys_.size(); ++k) {
-    const bool order = keys_[k].kind == KeyKind::order;
-    if (!order && keys_[k].kind != KeyKind::attribute) continue;
+    const bool order = keys_[k].kind == GroupKeyKind::order;
+    if (!order && keys_[k].kind != GroupKeyKind::attribute) continue;
     bool found = order;
     for (const auto& entry : geometry.plants) {
       const Plant& plant = *entry.plant;

@@ -10,16 +10,16 @@
 
 namespace sunfleck {
 
-enum class KeyKind { plant, placement, type, name, order, attribute, layer };
+enum class GroupKeyKind { plant, placement, type, name, order, attribute, layer };
 
-struct Key {
+struct GroupKey {
   std::string name;
-  KeyKind kind = KeyKind::attribute;
+  GroupKeyKind kind = GroupKeyKind::attribute;
   double depth = 0;  ///< of layers [m]; 0 = a twentieth of the plants' height
 };
 
 /// "plant", "placement", "type", "name", "order", "layer", "layer:0.5", else an attribute. Throws UsageError for a depth that is none.
-Key key_of(const std::string& word);
+GroupKey key_of(const std::string& word);
 
 /// The values of a key that the scene has, as row numbers. Numbers sort by value, texts by their first appearance; nothing comes last.
 class KeyTable {
@@ -48,20 +48,20 @@ class KeyTable {
 /// that has one. Throws UsageError for a name that no structure has.
 class OrganKeys {
  public:
-  OrganKeys(const Result& result, const std::vector<Key>& keys);
+  OrganKeys(const Result& result, const std::vector<GroupKey>& keys);
 
-  const OrganNames& names() const { return names_; }
+  const OrganTexts& names() const { return names_; }
   const KeyTable& table(std::size_t key) const { return tables_[key]; }
   /// Row of the key's table for every organ of a range.
-  std::vector<std::uint32_t> rows(std::size_t key, const OrganRows& organs);
+  std::vector<std::uint32_t> rows(std::size_t key, const OrganBlock& organs);
 
  private:
-  std::uint32_t row(std::size_t key, const OrganRows& organs, std::size_t i);
+  std::uint32_t row(std::size_t key, const OrganBlock& organs, std::size_t i);
   void find_structures(const Result& result);
 
   std::string file_;
-  std::vector<Key> keys_;
-  OrganNames names_;
+  std::vector<GroupKey> keys_;
+  OrganTexts names_;
   std::vector<KeyTable> tables_;
   std::map<std::size_t, std::vector<std::uint32_t>> named_;                      ///< per key: row of its table per name
   std::map<std::size_t, std::vector<std::vector<std::uint32_t>>> of_structure_;  ///< [key][plant][structure]

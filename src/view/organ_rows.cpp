@@ -15,13 +15,13 @@ KeptValues kept_values(const Result& result, const std::string& rows) {
   return kept;
 }
 
-OrganNames::OrganNames(const Result& result)
+OrganTexts::OrganTexts(const Result& result)
     : names(result.strings("names/organ")),
       types(result.strings("names/type")),
       plants(result.strings("names/plant")),
       placements(result.strings("names/placement")) {}
 
-OrganRows::OrganRows(const Result& result, const OrganNames& texts, std::size_t first_row, std::size_t rows)
+OrganBlock::OrganBlock(const Result& result, const OrganTexts& texts, std::size_t first_row, std::size_t rows)
     : first(first_row), count(rows) {
   const auto column = [&](const char* dataset, std::size_t below) {
     auto values = result.rows<std::uint32_t>(dataset, first, count);
@@ -38,8 +38,8 @@ OrganRows::OrganRows(const Result& result, const OrganNames& texts, std::size_t 
   structure = result.rows<std::uint32_t>("organs/structure", first, count);
 }
 
-ValueRows::ValueRows(const Result& result, const std::string& rows, const KeptValues& kept, std::size_t state, std::size_t first,
-                     std::size_t count) {
+LightBlock::LightBlock(const Result& result, const std::string& rows, const KeptValues& kept, std::size_t state, std::size_t first,
+                       std::size_t count) {
   if (kept.absorbed) absorbed = result.state_rows<float>(rows + "/absorbed", state, first, count);
   if (kept.irradiance) irradiance = result.state_rows<float>(rows + "/irradiance", state, first, count);
   if (kept.sunlit) sunlit = result.state_rows<float>(rows + "/sunlit", state, first, count);

@@ -18,21 +18,22 @@ struct KeptValues {
 KeptValues kept_values(const Result& result, const std::string& rows);
 
 /// String tables that organs name rows of.
-struct OrganNames {
-  explicit OrganNames(const Result& result);
+struct OrganTexts {
+  explicit OrganTexts(const Result& result);
   std::vector<std::string> names, types, plants, placements;
 };
 
 /// Rows [first, first + count) of /organs. Checked: rows of names are below their numbers.
-struct OrganRows {
-  OrganRows(const Result& result, const OrganNames& names, std::size_t first, std::size_t count);
+struct OrganBlock {
+  OrganBlock(const Result& result, const OrganTexts& names, std::size_t first, std::size_t count);
   std::size_t first, count;
   std::vector<std::uint32_t> name, type, plant, placement, structure;
 };
 
 /// Light of a range of organs or facets in one state; empty where the file does not keep it.
-struct ValueRows {
-  ValueRows(const Result& result, const std::string& rows, const KeptValues& kept, std::size_t state, std::size_t first, std::size_t count);
+struct LightBlock {
+  LightBlock(const Result& result, const std::string& rows, const KeptValues& kept, std::size_t state, std::size_t first,
+             std::size_t count);
   std::vector<float> absorbed, irradiance, sunlit;
 };
 

@@ -12,7 +12,7 @@ using namespace sunfleck;
 
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
 /// A stem, a leaf in two pieces, a mirrored copy of one piece, all with attributes of every kind.
 Plant small() {
@@ -45,7 +45,7 @@ std::vector<Triangle> facets(const Plant& plant) {
 TEST_CASE("A plant written as OPF is read back with its facets, structures and new numbers", "[format][opf][export]") {
   const Plant plant = small();
   const TextFile file("out.opf", "");
-  write_opf(plant, {{"absorbed_W_PAR", "area_m2"}, {{nan, 1.5, 2.25, 0.1}, {nan, 3, nan, 4}}}, file.path);
+  write_opf(plant, {{"absorbed_W_PAR", "area_m2"}, {{none, 1.5, 2.25, 0.1}, {none, 3, none, 4}}}, file.path);
   const Plant back = read_plant(file.path, 0.01);
   REQUIRE(back.structures.size() == plant.structures.size());
   for (std::size_t s = 0; s < plant.structures.size(); ++s) {
@@ -82,7 +82,7 @@ TEST_CASE("An OPF gains numbers and keeps everything else", "[format][opf][expor
       "0</mat><dUp>0.5</dUp><dDwn>2</dDwn></geometry>"
       "</decomp><follow class=\"Leaf\" scale=\"2\" id=\"3\"/></topology></opf>\n";
   const TextFile file("in.opf", text), out("out.opf", "");
-  add_to_opf(file.path, {{"absorbed_W_PAR", "old"}, {{nan, 12.5, nan}, {nan, 8, nan}}}, 3, out.path);
+  add_to_opf(file.path, {{"absorbed_W_PAR", "old"}, {{none, 12.5, none}, {none, 8, none}}}, 3, out.path);
   const Plant before = read_plant(file.path), after = read_plant(out.path);
   CHECK(std::get<double>(*after.attribute(1, "absorbed_W_PAR")) == 12.5);
   CHECK(std::get<double>(*after.attribute(1, "old")) == 8.0);
