@@ -191,15 +191,23 @@ void add_import(CLI::App& verb, ImportOptions& o) {
 
 void add_render(CLI::App& verb, RenderOptions& o) {
   verb.add_option("RESULT", o.result, "result of 'sunfleck solve', HDF5")->required()->type_name("");
-  verb.add_option("-o,--output", o.output, "picture to write")->required()->type_name("IMAGE.png");
+  verb.add_option("-o,--output", o.output,
+                  "picture to write; .exr keeps light before tone mapping, depth, and the rows of organs and facets")
+      ->required()
+      ->type_name("IMAGE.png|.exr");
   verb.add_option("--quantity", o.quantity,
                   "what is drawn: 'colour' (natural colour, the default), or a map with a legend of one of " + joined(quantity_names()))
       ->type_name("NAME")
       ->check(one_of(quantity_names()));
   verb.add_option("--band", o.band, "band of a map (default PAR, else the first), or the one band that natural colour is made from")
       ->type_name("NAME");
+  verb.add_option("--rgb", o.rgb,
+                  "bands that natural colour takes as red, green and blue (default those named R, G, B, else PAR in leaf colours)")
+      ->expected(3)
+      ->type_name("RED GREEN BLUE");
+  verb.add_option("--reference", o.reference, "result that 'error' and 'organ_error' compare with")->type_name("RESULT.h5");
   verb.add_option("--state", o.state, "lighting state, by name or by number from 1 (default the first)")->type_name("NAME");
-  verb.add_option("--colormap", o.colormap, "colours of a map: " + joined(color_map_names()) + " (default viridis)")
+  verb.add_option("--colormap", o.colormap, "colours of a map: " + joined(color_map_names()) + " (default viridis; difference for errors)")
       ->type_name("NAME")
       ->check(one_of(color_map_names()));
   verb.add_option("--range", o.range, "lowest and highest value of a map, in the quantity's unit (default from the data)")
@@ -236,11 +244,27 @@ void add_render(CLI::App& verb, RenderOptions& o) {
       "--no-ground", [&o] { o.ground = false; }, "leave out the ground");
   verb.add_flag("--map-ground", o.map_ground, "colour the ground of a map by its values too");
   verb.add_flag("--infinite", o.infinite, "draw a periodic scene with its repetition to the horizon");
+  verb.add_option("--views", o.views, "several views in one picture, separated by commas: some of " + joined(view_names()))
+      ->delimiter(',')
+      ->type_name("NAME,...");
+  verb.add_option("--cut", o.cut,
+                  "takes away the plants on the camera's side of a plane across an axis, such as y=0.5, or on the side that a normal "
+                  "points to, given by a point and the normal: x,y,z,nx,ny,nz [m]")
+      ->type_name("PLANE");
+  verb.add_option("--background", o.background, "what is behind the scene: 'sky' (the default) or 'white'")
+      ->type_name("NAME")
+      ->check(one_of({"sky", "white"}));
+  verb.add_option("--exposure", o.exposure_stops, "natural colour brighter or darker by so many factors of two (default 0)")
+      ->type_name("STOPS")
+      ->check(number_between(-20, 20));
+  verb.add_flag("--scale-bar", o.scale_bar, "a bar of a round length in parallel projections");
   verb.footer(
       "Examples:\n"
       "  sunfleck render stand.h5 -o stand.png\n"
       "  sunfleck render stand.h5 -o par.png --quantity absorbed --band PAR --elevation 20 --map-ground\n"
-      "  sunfleck render stand.h5 -o top.png --elevation 90 --azimuth 180 --orthographic");
+      "  sunfleck render stand.h5 -o views.png --views camera,front,top --scale-bar --background white\n"
+      "  sunfleck render stand.h5 -o cut.png --quantity sunlit --cut y=0.2\n"
+      "  sunfleck render draft.h5 -o error.png --quantity organ_error --reference fine.h5");
 }
 
 void add_view(CLI::App& verb, ViewOptions& o) {

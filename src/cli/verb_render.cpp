@@ -1,6 +1,9 @@
 #include <sunfleck/cli/verbs.hpp>
 
-#include <array>
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <filesystem>
 
 #include <fmt/format.h>
 
@@ -20,6 +23,44 @@ std::optional<Vec3> point(const std::vector<double>& xyz, const char* option) {
   return Vec3{xyz[0], xyz[1], xyz[2]};
 }
 
+/// "y=0.5", or "x,y,z,nx,ny,nz".
+CutPlane cut_plane(const std::string& text) {
+  const auto wrong = [&] {
+    return UsageError(
+        fmt::format("--cut: found '{}'; expected x, y or z, '=' and a number in metres, or six numbers x,y,z,nx,ny,nz", text));
+  };
+  const auto number = [&](std::string_view part) {
+    double value = 0;
+    const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), value);
+    if (error != std::errc{} || end != part.data() + part.size() || !std::isfinite(value)) throw wrong();
+    return value;
+  };
+  CutPlane cut;
+  if (text.size() > 2 && text[1] == '=' && text[0] >= 'x' && text[0] <= 'z') {
+    const int axis = text[0] - 'x';
+    cut.point[axis] = number(std::string_view(text).substr(2));
+    cut.normal[axis] = 1;
+    cut.facing_eye = true;
+    return cut;
+  }
+  std::vector<double> values;
+  for (std::size_t at = 0; at <= text.size();) {
+    const auto comma = std::min(text.find(',', at), text.size());
+    values.push_back(number(std::string_view(text).substr(at, comma - at)));
+    at = comma + 1;
+  }
+  if (values.size() != 6) throw wrong();
+  cut.point = {values[0], values[1], values[2]}, cut.normal = {values[3], values[4], values[5]};
+  if (!(glm::length(cut.normal) > 0)) throw wrong();
+  return cut;
+}
+
+bool is_exr(const std::string& file) {
+  std::string suffix = std::filesystem::path(file).extension().string();
+  std::transform(suffix.begin(), suffix.end(), suffix.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return suffix == ".exr";
+}
+
 PictureSettings settings_of(const RenderOptions& options) {
   PictureSettings s;
   s.width = options.width, s.height = options.height, s.samples = options.samples;
@@ -29,6 +70,11 @@ PictureSettings settings_of(const RenderOptions& options) {
   if (options.azimuth_deg) s.camera.azimuth_deg = *options.azimuth_deg;
   if (options.elevation_deg) s.camera.elevation_deg = *options.elevation_deg;
   if (options.field_of_view_deg) s.camera.field_of_view_deg = *options.field_of_view_deg;
+  s.views = options.views;
+  if (!options.cut.empty()) s.cut = cut_plane(options.cut);
+  if (options.background == "white") s.background = Background::white;
+  s.exposure_stops = options.exposure_stops, s.scale_bar = options.scale_bar;
+  s.layers = is_exr(options.output);
   return s;
 }
 
@@ -36,33 +82,43 @@ PictureSettings settings_of(const RenderOptions& options) {
 
 int verb_render(const RenderOptions& options, Progress& progress) {
   const Stopwatch watch;
-  check_output_path(options.output, {".png"}, {options.result});
+  check_output_path(options.output, {".png", ".exr"}, {options.result, options.reference.value_or("")});
   const PictureSettings settings = settings_of(options);
   const Result result(options.result);
   const std::size_t state = state_row(result, options.state);
   const std::size_t band = band_row(result, options.band);
   const std::string quantity = options.quantity.value_or("colour");
-  const FacetScene scene = stored_scene(result, options.ground);
-  if (settings.infinite && !scene.periodic) progress.line("note: --infinite: the scene is not periodic; it is drawn as it is");
+  std::optional<Result> reference;
+  if (options.reference) reference.emplace(*options.reference);
+  const DrawnScene scene(result, options.ground);
+  if (settings.infinite && !scene.geometry().periodic) progress.line("note: --infinite: the scene is not periodic; it is drawn as it is");
 
-  Image image = [&] {
+  const Picture picture = [&] {
     if (quantity != "colour") {
-      const MapChoice choice{.quantity = quantity,
-                             .band = band,
-                             .state = state,
-                             .map = color_map_from_name(options.colormap.value_or("viridis")),
-                             .logarithmic = options.logarithmic,
-                             .ground = options.map_ground,
-                             .range = options.range};
-      return draw_map(scene, stored_map(result, scene, choice), settings, progress);
+      MapChoice choice{.quantity = quantity,
+                       .band = band,
+                       .state = state,
+                       .map = color_map_from_name(options.colormap.value_or(has_two_signs(quantity) ? "difference" : "viridis")),
+                       .logarithmic = options.logarithmic,
+                       .ground = options.map_ground,
+                       .range = options.range};
+      if (reference) choice.reference = &*reference;
+      return draw_map(scene, stored_map(result, scene, choice, progress), settings, progress);
     }
-    FacetLight light = stored_light(result, scene, state);
-    if (options.band) light.band = band;
+    LightSource light = stored_light(result, scene, state);
+    if (options.band) light.colours = ColourBands{{band, band, band}, false};
+    if (!options.rgb.empty()) {
+      light.colours.emplace().measured = true;
+      for (std::size_t i = 0; i < 3; ++i) light.colours->rgb[i] = band_row(result, options.rgb[i]);
+    }
     return draw_natural(scene, light, settings, progress);
   }();
-  write_png(image, options.output);
-  progress.line(fmt::format("{}: {} x {} pixels, {} of {} facets, {:.1f} s", options.output, image.width(), image.height(), quantity,
-                            scene.size(), watch.seconds()));
+  if (picture.layers)
+    write_exr(*picture.layers, options.output);
+  else
+    write_png(picture.image, options.output);
+  progress.line(fmt::format("{}: {} x {} pixels, {} of {} facets, {:.1f} s", options.output, picture.image.width(), picture.image.height(),
+                            quantity, scene.size(), watch.seconds()));
   return 0;
 }
 

@@ -72,10 +72,11 @@ Camera::Camera(const CameraChoice& choice, std::span<const Vec3> points, double 
       if (choice.eye || choice.target) {
         half = std::max({(x[1] - cx) / (right * aspect), (cx - x[0]) / (left * aspect), (y[1] - cy) / top, (cy - y[0]) / bottom});
       } else {
-        half = std::max((x[1] - x[0]) / ((left + right) * aspect), (y[1] - y[0]) / (top + bottom));
+        half = std::max({(x[1] - x[0]) / ((left + right) * aspect), (y[1] - y[0]) / (top + bottom), choice.least_half_height});
         cx = 0.5 * (x[0] + x[1] - (right - left) * aspect * half), cy = 0.5 * (y[0] + y[1] - (top - bottom) * half);
       }
     }
+    half = std::max(half, choice.least_half_height);
     half_height_ = half > 0 ? half : 1.0;
     half_width_ = half_height_ * aspect;
     const double back = points.empty() ? distance : glm::dot(middle, forward_) - extent(points, forward_)[0] + distance;

@@ -38,6 +38,17 @@ double evaluate(const std::array<double, terms>& c, double x) {
   return x * b1 - b2 + c[0];
 }
 
+/// Straight lines in OKLab from white at 1/2 to a blue and a red of the same lightness and chroma.
+Rgb8 diverging(double t) {
+  const double part = std::fabs(2 * t - 1), hue = t < 0.5 ? 4.40 : 0.55;  // [rad]
+  const double lightness = 0.97 - 0.50 * part, a = 0.155 * part * std::cos(hue), b = 0.155 * part * std::sin(hue);
+  const double l = std::pow(lightness + 0.3963377774 * a + 0.2158037573 * b, 3),
+               m = std::pow(lightness - 0.1055613458 * a - 0.0638541728 * b, 3),
+               s = std::pow(lightness - 0.0894841775 * a - 1.2914855480 * b, 3);
+  return encode_srgb(Rgb{4.0767416621 * l - 3.3077115913 * m + 0.2309699292 * s, -1.2684380046 * l + 2.6097574011 * m - 0.3413193965 * s,
+                         -0.0041960863 * l - 0.7034186147 * m + 1.7076147010 * s});
+}
+
 std::uint8_t code(double v) {
   return static_cast<std::uint8_t>(std::lround(255 * std::clamp(v, 0.0, 1.0)));
 }
@@ -45,7 +56,7 @@ std::uint8_t code(double v) {
 }  // namespace
 
 const std::vector<std::string>& color_map_names() {
-  static const std::vector<std::string> names{"viridis", "magma", "inferno", "cividis", "grey"};
+  static const std::vector<std::string> names{"viridis", "magma", "inferno", "cividis", "grey", "difference"};
   return names;
 }
 
@@ -62,6 +73,7 @@ Rgb8 color_at(ColorMap map, double t) {
   if (std::isnan(t)) return {128, 128, 128};
   t = std::clamp(t, 0.0, 1.0);
   if (map == ColorMap::grey) return {code(t), code(t), code(t)};
+  if (map == ColorMap::difference) return diverging(t);
   const Fit& fit = map == ColorMap::viridis ? viridis : map == ColorMap::magma ? magma : map == ColorMap::inferno ? inferno : cividis;
   const double x = 2 * t - 1;
   return {code(evaluate(fit[0], x)), code(evaluate(fit[1], x)), code(evaluate(fit[2], x))};

@@ -7,6 +7,8 @@
 #include <sunfleck/core/names.hpp>
 #include <sunfleck/view/stored.hpp>
 
+#include "view/facet_lookup.hpp"
+
 namespace sunfleck {
 
 namespace {
@@ -91,6 +93,36 @@ std::size_t band_row(const Result& result, const std::optional<std::string>& ban
   const auto& names = result.bands();
   const auto par = std::find(names.begin(), names.end(), "PAR");
   return par == names.end() ? 0 : static_cast<std::size_t>(par - names.begin());
+}
+
+LightSource stored_light(const Result& result, const DrawnScene& scene, std::size_t state) {
+  const std::size_t b = result.bands().size();
+  LightSource light;
+  light.bands = result.bands(), light.sun = result.states().at(state).sun;
+  if (result.has("facets/irradiance")) {
+    light.irradiance = [&result, state](std::size_t first, std::size_t count) {
+      return result.state_rows<float>("facets/irradiance", state, first, count);
+    };
+    if (result.has("facets/sunlit"))
+      light.sunlit = [&result, state](std::size_t first, std::size_t count) {
+        return result.state_rows<float>("facets/sunlit", state, first, count);
+      };
+    return light;
+  }
+  if (!result.has("organs/irradiance"))
+    throw InputError(location(result.file(), 0, "facets/irradiance"), "nothing",
+                     "irradiance of facets or organs; [output] of the scene left both out");
+  // The mean of an organ says nothing about where the sun falls on it: no sharp beam.
+  light.irradiance = [b, facets = lookup(scene), organs = result.state_rows<float>("organs/irradiance", state, 0, result.organ_count())](
+                         std::size_t first, std::size_t count) {
+    const auto organ = facets.organ(first, count);
+    std::vector<float> out(2 * b * count);
+    for (std::size_t i = 0; i < count; ++i)
+      std::copy_n(organs.begin() + static_cast<std::ptrdiff_t>(2 * b * organ[i]), 2 * b,
+                  out.begin() + static_cast<std::ptrdiff_t>(2 * b * i));
+    return out;
+  };
+  return light;
 }
 
 FacetLight stored_light(const Result& result, const FacetScene& scene, std::size_t state) {

@@ -41,6 +41,7 @@ TEST_CASE("colour maps: ends and middle of the published tables, rising lightnes
   REQUIRE(near(color_at(ColorMap::inferno, 1), {252, 255, 164}, 4));
   REQUIRE(near(color_at(ColorMap::cividis, 0), {0, 32, 77}, 7));
   for (const auto& name : color_map_names()) {
+    if (name == "difference") continue;
     float before = -1;
     for (int i = 0; i <= 64; ++i) {
       const float l = luminance(decode_srgb(color_at(color_map_from_name(name), i / 64.0)));
@@ -50,11 +51,31 @@ TEST_CASE("colour maps: ends and middle of the published tables, rising lightnes
   }
   REQUIRE(color_at(ColorMap::viridis, -3) == color_at(ColorMap::viridis, 0));
   REQUIRE(color_at(ColorMap::viridis, std::numeric_limits<double>::quiet_NaN()) == Rgb8{128, 128, 128});
-  REQUIRE_THROWS_WITH(color_map_from_name("virdis"),
-                      "--colormap: found 'virdis'; expected one of viridis, magma, inferno, cividis, grey (did you mean 'viridis'?)");
+  REQUIRE_THROWS_WITH(
+      color_map_from_name("virdis"),
+      "--colormap: found 'virdis'; expected one of viridis, magma, inferno, cividis, grey, difference (did you mean 'viridis'?)");
   std::set<Rgb8> distinct;
   for (std::size_t k = 0; k < 60; ++k) distinct.insert(category_color(k));
   REQUIRE(distinct.size() == 60);
+}
+
+TEST_CASE("the colour map for differences is white at zero, blue below, red above, and darkens by equal steps of lightness", "[view]") {
+  // OKLab lightness of a display colour (Ottosson 2020).
+  const auto lightness = [](const Rgb8& colour) {
+    const Rgb c = decode_srgb(colour);
+    return 0.2104542553 * std::cbrt(0.4122214708 * c.r + 0.5363325363 * c.g + 0.0514459929 * c.b) +
+           0.7936177850 * std::cbrt(0.2119034982 * c.r + 0.6806995451 * c.g + 0.1073969566 * c.b) -
+           0.0040720468 * std::cbrt(0.0883024619 * c.r + 0.2817188376 * c.g + 0.6299787005 * c.b);
+  };
+  const auto at = [](double t) { return color_at(ColorMap::difference, t); };
+  REQUIRE(std::min({at(0.5)[0], at(0.5)[1], at(0.5)[2]}) > 240);
+  REQUIRE(at(0)[2] > at(0)[0] + 100);
+  REQUIRE(at(1)[0] > at(1)[2] + 100);
+  for (int i = 0; i <= 10; ++i) {
+    const double t = 0.05 * i, expected = 0.97 - 0.5 * (1 - 2 * t);
+    REQUIRE(lightness(at(t)) == Approx(expected).margin(0.005));  // rounding to 8 bits; no channel is clamped
+    REQUIRE(lightness(at(1 - t)) == Approx(expected).margin(0.005));
+  }
 }
 
 TEST_CASE("ticks are round numbers inside the range", "[view]") {

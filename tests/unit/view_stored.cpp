@@ -69,7 +69,7 @@ TEST_CASE("maps hold the values of the file, with title, unit and scale", "[view
   const auto absorbed = result.state_rows<float>("facets/absorbed", state, 0, n);
   const auto map = [&](const char* quantity) {
     MapChoice choice;
-    choice.quantity = quantity, choice.band = band, choice.state = state;
+    choice.quantity = quantity, choice.band = band, choice.state = state, choice.reference = &result;
     return stored_map(result, read, choice);
   };
   const FacetMap seen = map("irradiance"), front = map("irradiance_front"), back = map("irradiance_back"), taken = map("absorbed");
@@ -94,6 +94,75 @@ TEST_CASE("maps hold the values of the file, with title, unit and scale", "[view
     REQUIRE_FALSE(any.title.empty());
     REQUIRE((!any.names.empty() || any.scale.high > any.scale.low));
   }
+}
+
+TEST_CASE("a map read in pieces from a scene that is not written out is the map of the scene in memory", "[view][result]") {
+  const Folder folder;
+  const Scene scene = small_scene();
+  const Result result(stored(folder, scene, expand(scene)));
+  const FacetScene read = stored_scene(result);
+  const DrawnScene drawn(result);
+  REQUIRE(drawn.size() == read.size());
+  for (std::size_t f = 0; f < read.size(); ++f) {
+    const auto place = drawn.place(f);
+    REQUIRE(drawn.corners(place) == read.corners[f]);
+    REQUIRE(drawn.organ(place) == read.organ[f]);
+    REQUIRE(drawn.optics(place) == read.optics[f]);
+    REQUIRE(drawn.organ_type(place) == read.organs.types[read.organs.type[read.organ[f]]]);
+    REQUIRE(drawn.run_begin(place) + place.triangle == f);
+  }
+  for (const auto& quantity : quantity_names()) {
+    if (quantity == "colour") continue;
+    INFO(quantity);
+    MapChoice choice;
+    choice.quantity = quantity, choice.reference = &result;
+    const FacetMap whole = stored_map(result, read, choice);
+    const MapSource source = stored_map(result, drawn, choice, silent());
+    REQUIRE(source.title == whole.title);
+    REQUIRE(source.names == whole.names);
+    REQUIRE(source.scale.low == whole.scale.low);
+    REQUIRE(source.scale.high == whole.scale.high);
+    std::vector<float> pieces;
+    for (std::size_t first = 0; first < read.size(); first += 7) {
+      const auto part = source.values(first, std::min<std::size_t>(7, read.size() - first));
+      pieces.insert(pieces.end(), part.begin(), part.end());
+    }
+    REQUIRE(pieces == whole.values);
+  }
+}
+
+TEST_CASE("the error of a map is in percent of the reference's mean, and needs a reference of the same scene", "[view][result]") {
+  const Folder folder;
+  const Scene scene = small_scene();
+  const FacetScene facets = expand(scene);
+  const Result reference(stored(folder, scene, facets, "reference.h5"));
+  Values brighter(facets);
+  for (auto& e : brighter.irradiance) e *= 1.1f;
+  {
+    ResultWriter writer(folder / "brighter.h5", scene, facets, scene.output, "0.1.0", "flat");
+    brighter.send(writer, 1000);
+    writer.finish(small_report());
+  }
+  const Result result(folder / "brighter.h5");
+  const DrawnScene drawn(result);
+  MapChoice choice;
+  choice.quantity = "organ_error";
+  REQUIRE_THROWS_WITH(stored_map(result, drawn, choice, silent()),
+                      "--quantity organ_error: found no reference; expected --reference RESULT.h5");
+  choice.reference = &reference;
+  const auto organs = stored_map(result, drawn, choice, silent()).values(0, drawn.plant_facets());
+  const auto area = result.rows<float>("facets/area", 0, drawn.plant_facets());
+  double sum = 0, all = 0;
+  for (std::size_t f = 0; f < organs.size(); ++f) sum += organs[f] * area[f], all += area[f];
+  REQUIRE(sum / all == Approx(10).epsilon(1e-4));  // every value is a tenth higher: so is the mean; kept as float
+  const MapSource map = stored_map(result, drawn, choice, silent());
+  REQUIRE(map.scale.low == -map.scale.high);
+  REQUIRE(map.title.back() == "% of mean absorbed");
+
+  Scene other = small_scene(5);
+  const Result stranger(stored(folder, other, expand(other), "other.h5"));
+  choice.reference = &stranger;
+  REQUIRE_THROWS_AS(stored_map(result, drawn, choice, silent()), InputError);
 }
 
 TEST_CASE("the scale of a map comes from plants, with the ground where that is mapped", "[view][result]") {

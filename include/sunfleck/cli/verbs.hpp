@@ -52,9 +52,14 @@ struct RenderOptions {
   std::vector<double> range;  ///< low, high; empty = from the data
   int width = 1200, height = 900, samples = 9;
   bool logarithmic = false, ground = true;
-  bool orthographic = false;  ///< parallel projection
-  bool map_ground = false;    ///< a map colours the ground by its values too
-  bool infinite = false;      ///< a periodic scene is drawn with its repetition
+  bool orthographic = false;            ///< parallel projection
+  bool map_ground = false;              ///< a map colours the ground by its values too
+  bool infinite = false;                ///< a periodic scene is drawn with its repetition
+  std::vector<std::string> views, rgb;  ///< rgb: names of three bands, as red, green and blue
+  std::string cut;                      ///< "x=1.5", or six numbers: a point and a normal
+  std::optional<std::string> reference, background;
+  double exposure_stops = 0;
+  bool scale_bar = false;
 };
 int verb_render(const RenderOptions& options, Progress& progress);
 

@@ -21,6 +21,7 @@ struct CameraChoice {
   double elevation_deg = 25.0;                ///< of the camera above the horizon, in [-90, 90]
   double field_of_view_deg = 35.0;            ///< full vertical angle, in (0, 170]; for a perspective only
   bool orthographic = false;                  ///< parallel projection
+  double least_half_height = 0;               ///< a parallel projection shows at least this much above and below its middle [m]
 };
 
 /// Part of the picture that the framed points must lie in, as fractions from its left and top edges.
@@ -41,6 +42,9 @@ class Camera {
   /// Picture coordinates of a world point; no value behind a perspective camera.
   std::optional<std::array<double, 2>> project(const Vec3& p) const;
   const Vec3& eye() const { return eye_; }
+  bool orthographic() const { return orthographic_; }
+  /// Half the picture's height: at distance 1 (perspective), or in the scene [m] (parallel projection).
+  double half_height() const { return half_height_; }
   const Vec3& forward() const { return forward_; }
 
  private:

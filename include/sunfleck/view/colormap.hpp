@@ -12,8 +12,9 @@ namespace sunfleck {
 /// viridis, magma, inferno: van der Walt & Smith 2015 (bids.github.io/colormap); cividis, made for colour-deficient viewers:
 /// Nunez, Anderton & Renslow 2018, doi:10.1371/journal.pone.0199239; grey: linear in sRGB code.
 /// Stored as our own Chebyshev fits of degree 8 to the published tables: within 2 (viridis), 3 (magma), 4 (inferno) and 7 (cividis) of 255
-/// codes.
-enum class ColorMap : std::uint8_t { viridis, magma, inferno, cividis, grey };
+/// codes. difference: blue over white to red, for values on both sides of zero; lightness and chroma change in equal steps in OKLab
+/// (Ottosson 2020, bottosson.github.io/posts/oklab), both ends alike.
+enum class ColorMap : std::uint8_t { viridis, magma, inferno, cividis, grey, difference };
 
 /// Throws UsageError with the nearest name for anything else.
 ColorMap color_map_from_name(const std::string& name);

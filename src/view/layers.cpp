@@ -1,0 +1,80 @@
+#include <sunfleck/view/layers.hpp>
+
+#include <algorithm>
+#include <cctype>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <limits>
+
+#include <unistd.h>
+
+#include <ImfChannelList.h>
+#include <ImfCompression.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfOutputFile.h>
+#include <half.h>
+
+#include <fmt/core.h>
+
+#include <sunfleck/core/error.hpp>
+
+namespace sunfleck {
+
+void PictureLayers::resize(int w, int h, bool with_value) {
+  width = w, height = h;
+  const std::size_t n = static_cast<std::size_t>(w) * static_cast<std::size_t>(h);
+  for (auto* layer : {&red, &green, &blue, &alpha}) layer->assign(n, 0.0f);
+  depth.assign(n, std::numeric_limits<float>::infinity());
+  organ.assign(n, no_row), facet.assign(n, no_row);
+  if (with_value) value.assign(n, std::numeric_limits<float>::quiet_NaN());
+}
+
+void write_exr(const PictureLayers& layers, const std::string& file) {
+  std::string suffix = std::filesystem::path(file).extension().string();
+  std::transform(suffix.begin(), suffix.end(), suffix.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  if (suffix != ".exr") throw UsageError(fmt::format("{}: found the suffix '{}'; expected .exr", file, suffix));
+  if (std::filesystem::is_directory(file))
+    throw OutputError(fmt::format("{}: found a directory; expected a file name for the picture", file));
+
+  const auto width = static_cast<std::size_t>(layers.width);
+  Imf::Header header(layers.width, layers.height);
+  header.compression() = Imf::ZIP_COMPRESSION;
+  Imf::FrameBuffer buffer;
+  const auto add = [&](const char* name, Imf::PixelType type, const void* data, std::size_t bytes) {
+    header.channels().insert(name, Imf::Channel(type));
+    buffer.insert(name, Imf::Slice(type, const_cast<char*>(static_cast<const char*>(data)), bytes, bytes * width));
+  };
+  const auto halves = [](const std::vector<float>& from) {
+    std::vector<half> out;
+    out.reserve(from.size());
+    for (const float v : from) out.emplace_back(std::min(v, 65504.0f));  // the largest half
+    return out;
+  };
+  const auto red = halves(layers.red), green = halves(layers.green), blue = halves(layers.blue), alpha = halves(layers.alpha);
+  add("R", Imf::HALF, red.data(), sizeof(half)), add("G", Imf::HALF, green.data(), sizeof(half));
+  add("B", Imf::HALF, blue.data(), sizeof(half)), add("A", Imf::HALF, alpha.data(), sizeof(half));
+  add("Z", Imf::FLOAT, layers.depth.data(), sizeof(float));
+  add("organ.id", Imf::UINT, layers.organ.data(), sizeof(std::uint32_t));
+  add("facet.id", Imf::UINT, layers.facet.data(), sizeof(std::uint32_t));
+  if (!layers.value.empty()) add("value", Imf::FLOAT, layers.value.data(), sizeof(float));
+
+  const std::string temporary = fmt::format("{}.{}.tmp", file, ::getpid());
+  try {
+    Imf::OutputFile out(temporary.c_str(), header, 0);  // no threads of its own
+    out.setFrameBuffer(buffer);
+    out.writePixels(layers.height);
+  } catch (const std::exception& error) {
+    std::remove(temporary.c_str());
+    throw OutputError(fmt::format("{}: the picture could not be written: {}", file, error.what()));
+  }
+  if (std::rename(temporary.c_str(), file.c_str()) != 0) {
+    const int reason = errno;
+    std::remove(temporary.c_str());
+    throw OutputError(fmt::format("{}: the picture could not be written: {}", file, std::strerror(reason)));
+  }
+}
+
+}  // namespace sunfleck
