@@ -56,15 +56,27 @@ void TerminalProgress::line(std::string_view text) {
 void TerminalProgress::fraction(std::string_view phase, double done) {
   if (!terminal_) return;
   const auto now = std::chrono::steady_clock::now();
+  if (phase != phase_ || done < phase_done_) phase_ = phase, phase_began_ = now;
+  phase_done_ = done;
   if (now - last_drawn_ < redraw_interval) return;
   last_drawn_ = now;
-  const int width = std::clamp(terminal_columns() - static_cast<int>(phase.size()) - 10, 10, 40);
+  const int width = std::clamp(terminal_columns() - static_cast<int>(phase.size()) - 28, 10, 40);
   const double part = std::clamp(done, 0.0, 1.0);
   const int filled = static_cast<int>(part * width);
-  fmt::print(stderr, "\r\033[K{} [{}{}] {:3.0f} %", phase, std::string(static_cast<std::size_t>(filled), '#'),
-             std::string(static_cast<std::size_t>(width - filled), '.'), 100.0 * part);
+  const std::string left = time_left(std::chrono::duration<double>(now - phase_began_).count(), part);
+  fmt::print(stderr, "\r\033[K{} [{}{}] {:3.0f} %{}{}", phase, std::string(static_cast<std::size_t>(filled), '#'),
+             std::string(static_cast<std::size_t>(width - filled), '.'), 100.0 * part, left.empty() ? "" : ", ", left);
   std::fflush(stderr);
   bar_shown_ = true;
+}
+
+std::string time_left(double seconds, double done) {
+  if (seconds < 1 || !(done >= 0.02)) return {};
+  const double left = seconds * (1 - done) / done;
+  if (left < 100) return fmt::format("{:.0f} s left", left);
+  const auto minutes = static_cast<long>(left / 60 + 0.5);
+  if (minutes < 100) return fmt::format("{} min left", minutes);
+  return fmt::format("{} h {:02} min left", minutes / 60, minutes % 60);
 }
 
 bool TerminalProgress::cancelled() const {

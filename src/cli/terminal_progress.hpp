@@ -26,7 +26,13 @@ class TerminalProgress : public Progress {
 
   bool terminal_;
   bool bar_shown_ = false;
-  std::chrono::steady_clock::time_point last_drawn_{};
+  std::chrono::steady_clock::time_point last_drawn_{}, phase_began_{};
+  std::string phase_;  ///< the one whose bar is shown
+  double phase_done_ = 0;
 };
+
+/// "12 s left", "3 min left", "2 h 10 min left": what a phase still takes that did a share of its work in so many seconds. Empty as long as
+/// that is a guess: before a second has passed, or a fiftieth of the work is done.
+std::string time_left(double seconds, double done);
 
 }  // namespace sunfleck

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <sunfleck/core/error.hpp>
+#include <sunfleck/core/names.hpp>
 #include <sunfleck/core/timer.hpp>
 #include <sunfleck/view/stored.hpp>
 
@@ -24,7 +25,7 @@ std::optional<Vec3> point(const std::vector<double>& xyz, const char* option) {
 }
 
 /// "y=0.5", or "x,y,z,nx,ny,nz".
-CutPlane cut_plane(const std::string& text) {
+PictureCut cut_plane(const std::string& text) {
   const auto wrong = [&] {
     return UsageError(
         fmt::format("--cut: found '{}'; expected x, y or z, '=' and a number in metres, or six numbers x,y,z,nx,ny,nz", text));
@@ -35,7 +36,7 @@ CutPlane cut_plane(const std::string& text) {
     if (error != std::errc{} || end != part.data() + part.size() || !std::isfinite(value)) throw wrong();
     return value;
   };
-  CutPlane cut;
+  PictureCut cut;
   if (text.size() > 2 && text[1] == '=' && text[0] >= 'x' && text[0] <= 'z') {
     const int axis = text[0] - 'x';
     cut.point[axis] = number(std::string_view(text).substr(2));
@@ -53,6 +54,13 @@ CutPlane cut_plane(const std::string& text) {
   cut.point = {values[0], values[1], values[2]}, cut.normal = {values[3], values[4], values[5]};
   if (!(glm::length(cut.normal) > 0)) throw wrong();
   return cut;
+}
+
+std::size_t rgb_band(const Result& result, const std::string& name) {
+  const auto& bands = result.bands();
+  const auto at = std::find(bands.begin(), bands.end(), name);
+  if (at == bands.end()) throw UsageError(fmt::format("--rgb: found '{}'; expected three of the bands in {}: {}", name, result.file(), joined(bands)));
+  return static_cast<std::size_t>(at - bands.begin());
 }
 
 bool is_exr(const std::string& file) {
@@ -109,7 +117,7 @@ int verb_render(const RenderOptions& options, Progress& progress) {
     if (options.band) light.colours = ColourBands{{band, band, band}, false};
     if (!options.rgb.empty()) {
       light.colours.emplace().measured = true;
-      for (std::size_t i = 0; i < 3; ++i) light.colours->rgb[i] = band_row(result, options.rgb[i]);
+      for (std::size_t i = 0; i < 3; ++i) light.colours->rgb[i] = rgb_band(result, options.rgb[i]);
     }
     return draw_natural(scene, light, settings, progress);
   }();

@@ -2,26 +2,46 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
 #include <filesystem>
 #include <limits>
-
-#include <unistd.h>
 
 #include <ImfChannelList.h>
 #include <ImfCompression.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
+#include <ImfIO.h>
 #include <ImfOutputFile.h>
 #include <half.h>
 
 #include <fmt/core.h>
 
 #include <sunfleck/core/error.hpp>
+#include <sunfleck/core/replaced_file.hpp>
 
 namespace sunfleck {
+
+namespace {
+
+/// Where OpenEXR writes: memory, because its destructor goes back to the head of the file and cannot tell of a full disk.
+class Bytes : public Imf::OStream {
+ public:
+  explicit Bytes(const std::string& name) : Imf::OStream(name.c_str()) {}
+  void write(const char text[], int count) override {
+    const auto size = static_cast<std::size_t>(count);
+    if (bytes_.size() < at_ + size) bytes_.resize(at_ + size);
+    std::copy_n(text, size, bytes_.begin() + static_cast<std::ptrdiff_t>(at_));
+    at_ += size;
+  }
+  std::uint64_t tellp() override { return at_; }
+  void seekp(std::uint64_t at) override { at_ = at; }
+  const std::string& bytes() const { return bytes_; }
+
+ private:
+  std::string bytes_;
+  std::size_t at_ = 0;
+};
+
+}  // namespace
 
 void PictureLayers::resize(int w, int h, bool with_value) {
   width = w, height = h;
@@ -36,8 +56,6 @@ void write_exr(const PictureLayers& layers, const std::string& file) {
   std::string suffix = std::filesystem::path(file).extension().string();
   std::transform(suffix.begin(), suffix.end(), suffix.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   if (suffix != ".exr") throw UsageError(fmt::format("{}: found the suffix '{}'; expected .exr", file, suffix));
-  if (std::filesystem::is_directory(file))
-    throw OutputError(fmt::format("{}: found a directory; expected a file name for the picture", file));
 
   const auto width = static_cast<std::size_t>(layers.width);
   Imf::Header header(layers.width, layers.height);
@@ -61,20 +79,17 @@ void write_exr(const PictureLayers& layers, const std::string& file) {
   add("facet.id", Imf::UINT, layers.facet.data(), sizeof(std::uint32_t));
   if (!layers.value.empty()) add("value", Imf::FLOAT, layers.value.data(), sizeof(float));
 
-  const std::string temporary = fmt::format("{}.{}.tmp", file, ::getpid());
+  Bytes bytes(file);
   try {
-    Imf::OutputFile out(temporary.c_str(), header, 0);  // no threads of its own
+    Imf::OutputFile out(bytes, header, 0);  // no threads of its own
     out.setFrameBuffer(buffer);
     out.writePixels(layers.height);
   } catch (const std::exception& error) {
-    std::remove(temporary.c_str());
-    throw OutputError(fmt::format("{}: the picture could not be written: {}", file, error.what()));
+    throw OutputError(fmt::format("{}: the picture could not be encoded: {}", file, error.what()));
   }
-  if (std::rename(temporary.c_str(), file.c_str()) != 0) {
-    const int reason = errno;
-    std::remove(temporary.c_str());
-    throw OutputError(fmt::format("{}: the picture could not be written: {}", file, std::strerror(reason)));
-  }
+  ReplacedFile out(file);
+  out.write(bytes.bytes());
+  out.commit();
 }
 
 }  // namespace sunfleck

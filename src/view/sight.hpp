@@ -25,7 +25,7 @@ class Sight {
  private:
   const PlacedRays& rays_;
   PlacedRays::Part part_;
-  std::optional<CutPlane> cut_;
+  std::optional<PictureCut> cut_;
   double far_, haze_, clear_;
 };
 

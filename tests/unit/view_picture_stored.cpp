@@ -26,8 +26,9 @@ namespace {
 Result store(const Folder& folder) {
   const Scene scene = small_scene(12);
   const FacetScene facets = expand(scene);
+  const PlacedScene placed = place(scene);
   const Values values(facets);
-  ResultWriter writer(folder / "r.h5", scene, facets, scene.output, "0.1.0", "flat");
+  ResultWriter writer(folder / "r.h5", scene, placed, scene.output, "0.1.0", "flat");
   values.send(writer, 1000);
   writer.finish(small_report());
   return Result(folder / "r.h5");
@@ -120,7 +121,7 @@ TEST_CASE("a cut takes plants away on one side of it, and no ground", "[view]") 
   const DrawnScene scene(result);
   PictureSettings settings = small();
   settings.layers = true;
-  const auto seen = [&](std::optional<CutPlane> cut) {
+  const auto seen = [&](std::optional<PictureCut> cut) {
     settings.cut = cut;
     const Picture picture = draw_map(scene, absorbed(result, scene), settings, silent());
     REQUIRE(picture.layers);
@@ -139,15 +140,15 @@ TEST_CASE("a cut takes plants away on one side of it, and no ground", "[view]") 
   const auto [all, ground] = seen(std::nullopt);
   REQUIRE(all.high.x > 4);
   // Longest leaf of the largest copy: 1.7 x 0.22 m may reach over the plane.
-  const auto [west, more] = seen(CutPlane{{2, 0, 0}, {1, 0, 0}});
+  const auto [west, more] = seen(PictureCut{{2, 0, 0}, {1, 0, 0}});
   REQUIRE(west.high.x < 2.4);
   REQUIRE(more >= ground);
-  const auto [east, other] = seen(CutPlane{{2, 0, 0}, {-1, 0, 0}});
+  const auto [east, other] = seen(PictureCut{{2, 0, 0}, {-1, 0, 0}});
   REQUIRE(east.low.x > 1.6);
   REQUIRE(other >= ground);
   // The camera stands in the south-east: the same as the first.
-  REQUIRE(seen(CutPlane{{2, 0, 0}, {-1, 0, 0}, true}).first.high.x < 2.4);
-  REQUIRE_THROWS_AS(seen(CutPlane{{2, 0, 0}, {0, 0, 0}}), UsageError);
+  REQUIRE(seen(PictureCut{{2, 0, 0}, {-1, 0, 0}, true}).first.high.x < 2.4);
+  REQUIRE_THROWS_AS(seen(PictureCut{{2, 0, 0}, {0, 0, 0}}), UsageError);
 }
 
 TEST_CASE("EXR files hold depth, organ, facet and the mapped quantity, as another reader sees them", "[view]") {

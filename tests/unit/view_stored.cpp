@@ -139,7 +139,8 @@ TEST_CASE("the error of a map is in percent of the reference's mean, and needs a
   Values brighter(facets);
   for (auto& e : brighter.irradiance) e *= 1.1f;
   {
-    ResultWriter writer(folder / "brighter.h5", scene, facets, scene.output, "0.1.0", "flat");
+    const PlacedScene placed = place(scene);
+    ResultWriter writer(folder / "brighter.h5", scene, placed, scene.output, "0.1.0", "flat");
     brighter.send(writer, 1000);
     writer.finish(small_report());
   }

@@ -38,7 +38,7 @@ struct FacetMap {
 };
 
 /// Plants on the side of a plane that `normal` points to are not drawn; ground and light stay as they are.
-struct CutPlane {
+struct PictureCut {
   Vec3 point{0.0};          ///< [m]
   Vec3 normal{0.0};         ///< any length
   bool facing_eye = false;  ///< takes the side on which the first view's camera stands, whatever the sign of the normal
@@ -56,7 +56,7 @@ struct PictureSettings {
   /// Several views in one picture, in rows from the top left: names of view_names(). "camera" is the camera above; the others are parallel
   /// projections, all to one scale. Empty: the camera alone, without a caption.
   std::vector<std::string> views;
-  std::optional<CutPlane> cut;
+  std::optional<PictureCut> cut;
   Background background = Background::sky;              ///< of natural colour
   double exposure_stops = 0;                            ///< natural colour: brighter by factors of two
   bool scale_bar = false;                               ///< in parallel projections
