@@ -25,13 +25,13 @@ std::uint64_t rays_for(std::size_t facets) {
   return static_cast<std::uint64_t>(2.0e6 * std::clamp(std::sqrt(1e5 / static_cast<double>(facets)), 0.3, 1.0));
 }
 
-std::vector<SampleTarget> targets_of(const FacetRows& rows, const FacetScene& facets, const std::vector<ChosenOrgan>& chosen) {
+std::vector<SampleTarget> targets_of(const FacetRows& rows, const RayScene& rays, const std::vector<ChosenOrgan>& chosen) {
   std::vector<SampleTarget> targets;
   for (const auto& c : chosen) {
     const auto [copy, organ] = rows.organ_at(c.organ);
-    std::vector<std::uint32_t> numbers = rows.organ_facets(copy, organ);
-    for (auto& f : numbers) f += static_cast<std::uint32_t>(rows.first_facet(copy));
-    targets.emplace_back(facets, std::move(numbers), c.organ);
+    std::vector<CopyFacet> facets;
+    for (const auto f : rows.organ_facets(copy, organ)) facets.push_back(rays.at(rows.row({copy, f})));
+    targets.emplace_back(rays, std::move(facets), c.organ);
   }
   return targets;
 }
@@ -112,22 +112,21 @@ void estimate_band(std::size_t b, const OrganTotals& solved, const std::vector<C
 
 }  // namespace
 
-Certificate certify(const Scene& scene, const FacetRows& rows, const FacetScene& facets, const std::vector<ChosenOrgan>& candidates,
+Certificate certify(const Scene& scene, const FacetRows& rows, const RayScene& rays, const std::vector<ChosenOrgan>& candidates,
                     const OrganTotals& solved, const std::vector<std::vector<Balance>>& balance, const CertificateSettings& settings,
                     Progress& progress) {
   if (solved.organs.size() != candidates.size()) throw Error("certificate: the solved light of other organs than those chosen");
   Certificate out;
   out.seed = settings.seed;
   tbb::task_arena arena(settings.threads > 0 ? settings.threads : tbb::task_arena::automatic);
-  const RayScene rays(facets);
-  const PathSampler sampler(scene, facets, rays, certificate_seed(settings));
+  const PathSampler sampler(scene, rays, certificate_seed(settings));
   progress.check();
 
   auto chosen = candidates;
   std::vector<Measured> measured;
   if (!chosen.empty()) {
     // What a sample costs: one of each randomisation on a few organs. Counted in rays, so the same everywhere.
-    auto targets = targets_of(rows, facets, chosen);
+    auto targets = targets_of(rows, rays, chosen);
     const std::size_t pilots = std::min<std::size_t>(16, targets.size());
     std::vector<std::uint64_t> cost(pilots);
     arena.execute([&] {
@@ -142,7 +141,7 @@ Certificate certify(const Scene& scene, const FacetRows& rows, const FacetScene&
     const std::size_t affordable = std::max<std::size_t>(64, static_cast<std::size_t>(passes));
     if (affordable < chosen.size()) {
       chosen = choose_fewer(chosen, static_cast<std::uint32_t>(affordable), settings);
-      targets = targets_of(rows, facets, chosen);
+      targets = targets_of(rows, rays, chosen);
     }
     const auto count = static_cast<std::uint32_t>(std::clamp(passes / static_cast<double>(chosen.size()), 1.0, 65536.0));
     measured.resize(chosen.size());

@@ -59,6 +59,7 @@ SolveReport run_method(const MethodChoice& choice, const Scene& scene, const Pla
       settings.samples = *options.samples;
     else if (scene.solve.samples)
       settings.samples = *scene.solve.samples;
+    if (!facets) return trace_reference(scene, FacetRows(scene, placed), settings, sink, progress);
     return trace_reference(scene, *facets, settings, sink, progress);
   }
   RadiositySettings settings;
@@ -69,12 +70,15 @@ SolveReport run_method(const MethodChoice& choice, const Scene& scene, const Pla
   return solve_radiosity(scene, *facets, settings, sink, progress);
 }
 
-/// Paths go through copies written out; beyond this many facets they would take the memory that was saved.
-constexpr std::uint64_t most_certified_facets = 20'000'000;
+/// Where copies make up most of a large scene, rays through copies cost less memory than facets written out, and little more time.
+bool mostly_copies(const Scene& scene, const PlacedScene& placed) {
+  std::uint64_t unique = placed.ground.size();
+  for (std::size_t p = 0; p < scene.plants.size(); ++p) unique += placed.plant_facets[p];
+  return placed.facets > 2'000'000 && placed.facets / 4 > unique;
+}
 
 bool wants_certificate(const MethodChoice& choice, const Scene& scene, const PlacedScene& placed, const SolveOptions& options) {
-  return choice.method != "reference" && options.certificate && scene.solve.certificate.value_or(true) && placed.first_ground_facet > 0 &&
-         placed.facets <= most_certified_facets;
+  return choice.method != "reference" && options.certificate && scene.solve.certificate.value_or(true) && placed.first_ground_facet > 0;
 }
 
 void say_timings(const SolveReport& report, std::uint64_t facets, double seconds, Progress& progress) {
@@ -96,7 +100,7 @@ int verb_solve(const SolveOptions& options, Progress& progress) {
   const std::uint64_t seed = options.seed.value_or(scene.solve.seed.value_or(1));
   const PlacedScene placed = place(scene);
   std::optional<FacetScene> facets;  // every copy written out, for the methods that need it
-  if (choice.method != "instantiation") facets = expand(scene);
+  if (choice.method != "instantiation" && !(choice.method == "reference" && mostly_copies(scene, placed))) facets = expand(scene);
   const double read_seconds = total.seconds();
   say_what_was_read(scene, placed, read_seconds, progress);
   if (facets) say_what_is_dropped(*facets, progress);
@@ -107,6 +111,8 @@ int verb_solve(const SolveOptions& options, Progress& progress) {
   CertificateSettings checking;
   checking.seed = seed;
   checking.threads = options.threads;
+  if (options.certificate_organs) checking.organs = *options.certificate_organs;
+  if (options.certificate_rays) checking.rays = *options.certificate_rays;
   std::vector<ChosenOrgan> chosen;
   ResultWriter writer(options.result, scene, placed, scene.output, software_version(), choice.method);
   if (wants_certificate(choice, scene, placed, options)) {
@@ -119,10 +125,10 @@ int verb_solve(const SolveOptions& options, Progress& progress) {
   report.timings.emplace(report.timings.begin(), "read", read_seconds);
 
   std::optional<Certificate> certificate;
-  if (wants_certificate(choice, scene, placed, options)) {
+  if (!chosen.empty()) {
     const Stopwatch watch;
-    if (!facets) facets = expand(scene);
-    certificate = certify(scene, rows, *facets, chosen, writer.totals(), report.balance, checking, progress);
+    certificate = certify(scene, rows, facets ? RayScene(*facets) : RayScene(rows), chosen, writer.totals(), report.balance, checking,
+                          progress);
     add_seconds(report.timings, "certificate", watch.seconds());
   }
   progress.check();

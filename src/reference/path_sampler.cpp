@@ -24,15 +24,17 @@ Vec3 cosine_direction(const Vec3& n, double u, double v) {
 
 }  // namespace
 
-SampleTarget::SampleTarget(const FacetScene& scene, std::vector<std::uint32_t> facets, std::uint64_t key)
-    : facets_(std::move(facets)), key_(key) {
-  std::erase_if(facets_, [&](std::uint32_t f) { return !(scene.area[f] > 0.0f); });
-  cumulative_.reserve(facets_.size());
+SampleTarget::SampleTarget(const RayScene& rays, std::vector<CopyFacet> facets, std::uint64_t key) : key_(key) {
   double total = 0.0;
-  for (const auto f : facets_) cumulative_.push_back(total += scene.area[f]);
+  for (const auto f : facets) {
+    const auto area = static_cast<float>(glm::length(area_vector(rays.corners(f))));
+    if (!(area > 0.0f)) continue;
+    facets_.push_back(f);
+    cumulative_.push_back(total += area);
+  }
 }
 
-std::uint32_t SampleTarget::facet_at(double x, double& within) const {
+CopyFacet SampleTarget::facet_at(double x, double& within) const {
   if (facets_.size() == 1) return within = x, facets_[0];
   const double a = x * area();
   const auto i =
@@ -42,8 +44,16 @@ std::uint32_t SampleTarget::facet_at(double x, double& within) const {
   return facets_[i];
 }
 
+/// The facet's plane, looked up once for all that happens at a point of it.
+struct Plane {
+  explicit Plane(const Triangle& t) : corners(t), normal(glm::normalize(area_vector(t))) {}
+  Vec3 point(double u, double v) const { return corners[0] + u * (corners[1] - corners[0]) + v * (corners[2] - corners[0]); }
+  Triangle corners;
+  Vec3 normal;
+};
+
 struct PathSampler::Impl {
-  Impl(const Scene& scene, const FacetScene& f, const RayScene& r, std::uint64_t s);
+  Impl(const Scene& scene, const RayScene& r, std::uint64_t s);
 
   /// The sun of a state, ready to be sampled.
   struct Beam {
@@ -53,26 +63,22 @@ struct PathSampler::Impl {
     Vec3 direction(double u, double v) const;
   };
 
-  Vec3 normal(std::uint32_t facet) const { return glm::normalize(area_vector(facets.corners[facet])); }
-  Vec3 point(std::uint32_t facet, double u, double v) const {
-    const auto& c = facets.corners[facet];
-    return c[0] + u * (c[1] - c[0]) + v * (c[2] - c[0]);
-  }
-  std::size_t material(std::uint32_t facet) const { return facets.optics[facet] * bands; }
+  Plane plane(CopyFacet facet) const { return Plane(rays.corners(facet)); }
+  std::size_t material(CopyFacet facet) const { return rays.material(facet) * bands; }
 
   /// Calls hit(state, on_front, irradiance factor: cosine to the sun, 0 < factor) for each state whose sun reaches the point.
   template <class Hit>
-  void sun_at(const Vec3& p, std::uint32_t facet, const Vec3& n, double u, double v, std::uint64_t& count, Hit&& hit) const;
+  void sun_at(const Vec3& p, CopyFacet facet, const Vec3& n, double u, double v, std::uint64_t& count, Hit&& hit) const;
 
   /// Follows a ray through the scene. hit(bounce, facet, point, normal, front) at every facet met, before it scatters; exit(bounce,
   /// direction) if it leaves. `weight` [b] begins at 1.
   template <class Hit, class Exit>
-  void walk(Vec3 p, Vec3 d, std::uint32_t facet, double* weight, RandomStream& random, std::uint64_t& count, Hit&& hit, Exit&& exit) const;
+  void walk(Vec3 p, Vec3 d, CopyFacet facet, double* weight, RandomStream& random, std::uint64_t& count, Hit&& hit, Exit&& exit) const;
 
-  void one_side(const Vec3& p, const Vec3& d, std::uint32_t facet, RandomStream& random, double* weight, double* sum, double* direct,
+  void one_side(const Vec3& p, const Vec3& d, CopyFacet facet, RandomStream& random, double* weight, double* sum, double* direct,
                 std::uint64_t& count) const;
 
-  double absorptance(std::uint32_t facet, bool on_front, std::size_t b) const {
+  double absorptance(CopyFacet facet, bool on_front, std::size_t b) const {
     const auto m = material(facet) + b;
     return std::max(0.0, 1.0 - (on_front ? front : back)[m] - through[m]);
   }
@@ -86,7 +92,6 @@ struct PathSampler::Impl {
   };
   Particles particles(std::uint32_t batch, std::uint32_t count) const;
 
-  const FacetScene& facets;
   const RayScene& rays;
   std::uint64_t seed;
   std::size_t states, bands;
@@ -96,8 +101,8 @@ struct PathSampler::Impl {
   std::vector<double> front, back, through;  ///< [material][b]
 };
 
-PathSampler::Impl::Impl(const Scene& scene, const FacetScene& f, const RayScene& r, std::uint64_t s)
-    : facets(f), rays(r), seed(s), states(scene.states.size()), bands(scene.band_count()) {
+PathSampler::Impl::Impl(const Scene& scene, const RayScene& r, std::uint64_t s)
+    : rays(r), seed(s), states(scene.states.size()), bands(scene.band_count()) {
   for (const auto& state : scene.states) {
     Beam beam;
     if (state.sun) {
@@ -109,7 +114,7 @@ PathSampler::Impl::Impl(const Scene& scene, const FacetScene& f, const RayScene&
     beams.push_back(beam);
     skies.push_back(state.sky ? &*state.sky : nullptr);
   }
-  for (const auto& m : facets.materials)
+  for (const auto& m : rays.materials())
     for (std::size_t b = 0; b < bands; ++b) {
       front.push_back(m.reflectance_front[b]);
       back.push_back(m.reflectance_back[b]);
@@ -125,8 +130,7 @@ Vec3 PathSampler::Impl::Beam::direction(double u, double v) const {
 }
 
 template <class Hit>
-void PathSampler::Impl::sun_at(const Vec3& p, std::uint32_t facet, const Vec3& n, double u, double v, std::uint64_t& count,
-                               Hit&& hit) const {
+void PathSampler::Impl::sun_at(const Vec3& p, CopyFacet facet, const Vec3& n, double u, double v, std::uint64_t& count, Hit&& hit) const {
   for (std::size_t s = 0; s < states; ++s) {
     const Beam& beam = beams[s];
     if (!beam.sun) continue;
@@ -140,15 +144,16 @@ void PathSampler::Impl::sun_at(const Vec3& p, std::uint32_t facet, const Vec3& n
 }
 
 template <class Hit, class Exit>
-void PathSampler::Impl::walk(Vec3 p, Vec3 d, std::uint32_t facet, double* weight, RandomStream& random, std::uint64_t& count, Hit&& hit,
+void PathSampler::Impl::walk(Vec3 p, Vec3 d, CopyFacet facet, double* weight, RandomStream& random, std::uint64_t& count, Hit&& hit,
                              Exit&& exit) const {
   for (int bounce = 0;; ++bounce) {
     ++count;
     const RayHit met = rays.first_hit(p, d, facet);
     if (!met) return exit(bounce, d);
-    facet = met.facet;
-    p = point(facet, met.u, met.v);
-    Vec3 n = normal(facet);
+    facet = met.where();
+    const Plane here = plane(facet);
+    p = here.point(met.u, met.v);
+    Vec3 n = here.normal;
     hit(bounce, facet, p, n, met.front);
 
     const auto m = material(facet);
@@ -172,12 +177,12 @@ void PathSampler::Impl::walk(Vec3 p, Vec3 d, std::uint32_t facet, double* weight
   }
 }
 
-void PathSampler::Impl::one_side(const Vec3& start, const Vec3& direction, std::uint32_t facet, RandomStream& random, double* weight,
+void PathSampler::Impl::one_side(const Vec3& start, const Vec3& direction, CopyFacet facet, RandomStream& random, double* weight,
                                  double* sum, double* direct, std::uint64_t& count) const {
   std::fill_n(weight, bands, 1.0);
   walk(
       start, direction, facet, weight, random, count,
-      [&](int, std::uint32_t f, const Vec3& p, const Vec3& n, bool on_front) {
+      [&](int, CopyFacet f, const Vec3& p, const Vec3& n, bool on_front) {
         if (!has_sun) return;
         const double u = random.next(), v = random.next();
         const auto m = material(f);
@@ -199,8 +204,8 @@ void PathSampler::Impl::one_side(const Vec3& start, const Vec3& direction, std::
       });
 }
 
-PathSampler::PathSampler(const Scene& scene, const FacetScene& facets, const RayScene& rays, std::uint64_t seed)
-    : impl_(std::make_unique<const Impl>(scene, facets, rays, seed)) {}
+PathSampler::PathSampler(const Scene& scene, const RayScene& rays, std::uint64_t seed)
+    : impl_(std::make_unique<const Impl>(scene, rays, seed)) {}
 PathSampler::~PathSampler() = default;
 std::size_t PathSampler::states() const {
   return impl_->states;
@@ -217,9 +222,10 @@ void PathSampler::Impl::add_paths(const SampleTarget& target, std::uint64_t stre
   const auto scramble = static_cast<std::uint32_t>(stream);
   for (std::uint32_t i = 0; i < count; ++i) {
     double x;
-    const std::uint32_t facet = target.facet_at(sobol_owen(i, 0, scramble), x);
+    const CopyFacet facet = target.facet_at(sobol_owen(i, 0, scramble), x);
     const double root = std::sqrt(x), y = sobol_owen(i, 1, scramble);
-    const Vec3 p = point(facet, root * (1.0 - y), root * y), n = normal(facet);
+    const Plane start = plane(facet);
+    const Vec3 p = start.point(root * (1.0 - y), root * y), n = start.normal;
     RandomStream random(mix(stream, i));
     std::fill(here.begin(), here.end(), 0.0);
     one_side(p, cosine_direction(n, sobol_owen(i, 2, scramble), sobol_owen(i, 3, scramble)), facet, random, weight.data(), here.data(),
@@ -238,10 +244,10 @@ void PathSampler::Impl::add_sun(const SampleTarget& target, std::uint64_t stream
   const auto scramble = static_cast<std::uint32_t>(mix(stream, 0x73756eULL));
   for (std::uint32_t i = 0; i < count; ++i) {
     double x;
-    const std::uint32_t facet = target.facet_at(sobol_owen(i, 0, scramble), x);
+    const CopyFacet facet = target.facet_at(sobol_owen(i, 0, scramble), x);
     const double root = std::sqrt(x), y = sobol_owen(i, 1, scramble);
-    const Vec3 p = point(facet, root * (1.0 - y), root * y);
-    sun_at(p, facet, normal(facet), sobol_owen(i, 2, scramble), sobol_owen(i, 3, scramble), sums.rays,
+    const Plane start = plane(facet);
+    sun_at(start.point(root * (1.0 - y), root * y), facet, start.normal, sobol_owen(i, 2, scramble), sobol_owen(i, 3, scramble), sums.rays,
            [&](std::size_t s, bool on_front, double factor) {
              const std::size_t side = 2 * s + (on_front ? 0 : 1);
              sums.sunlit[side] += share;
@@ -273,20 +279,20 @@ void PathSampler::sample(const SampleTarget& target, std::uint32_t randomisation
 
 PathSampler::Impl::Particles PathSampler::Impl::particles(std::uint32_t batch, std::uint32_t count) const {
   Particles sum{std::vector<double>(states * bands, 0.0), std::vector<double>(states * bands, 0.0), 0};
-  if (facets.bounds.empty()) return sum;
-  const Vec3 centre = facets.bounds.centre();
-  const double radius = 0.5 * glm::length(facets.bounds.size());
+  if (rays.bounds().empty()) return sum;
+  const Vec3 centre = rays.bounds().centre();
+  const double radius = 0.5 * glm::length(rays.bounds().size());
   std::vector<double> weight(bands);
   // Sends one particle that stands for power[b] along the line that comes from direction d, through the point u, v of a disc that
   // holds the scene's shadow, or of the cell's top or bottom.
   const auto send = [&](std::size_t s, const Vec3& d, double u, double v, double factor, const std::vector<double>& irradiance,
                         RandomStream& random) {
     Vec3 from;
-    if (facets.periodic) {
-      const auto& cell = *facets.periodic;
-      const double margin = 1e-3 * (facets.bounds.size().z + cell.width());
+    if (rays.periodic()) {
+      const auto& cell = *rays.periodic();
+      const double margin = 1e-3 * (rays.bounds().size().z + cell.width());
       from = {cell.x_low + u * cell.width(), cell.y_low + v * cell.depth(),
-              d.z > 0.0 ? facets.bounds.high.z + margin : facets.bounds.low.z - margin};
+              d.z > 0.0 ? rays.bounds().high.z + margin : rays.bounds().low.z - margin};
       factor *= cell.area() * std::abs(d.z);
     } else {
       Vec3 a, b;
@@ -297,8 +303,8 @@ PathSampler::Impl::Particles PathSampler::Impl::particles(std::uint32_t batch, s
     }
     std::fill(weight.begin(), weight.end(), 1.0);
     walk(
-        from, -d, no_facet, weight.data(), random, sum.rays,
-        [&](int bounce, std::uint32_t, const Vec3&, const Vec3&, bool) {
+        from, -d, nowhere, weight.data(), random, sum.rays,
+        [&](int bounce, CopyFacet, const Vec3&, const Vec3&, bool) {
           if (bounce == 0)
             for (std::size_t b = 0; b < bands; ++b) sum.in[s * bands + b] += factor * irradiance[b];
         },

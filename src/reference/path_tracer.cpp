@@ -17,7 +17,7 @@ namespace {
 /// Rows of one block of facets, and their sums.
 class Block {
  public:
-  Block(const FacetScene& facets, const PathSampler& sampler, std::size_t count)
+  Block(const RayScene& facets, const PathSampler& sampler, std::size_t count)
       : facets_(facets),
         sampler_(sampler),
         states_(sampler.states()),
@@ -29,8 +29,8 @@ class Block {
 
   void trace(std::size_t first, std::size_t count, std::uint32_t samples) {
     tbb::parallel_for(std::size_t{0}, count * reference_randomisations, [&](std::size_t item) {
-      const auto facet = static_cast<std::uint32_t>(first + item / reference_randomisations);
-      const SampleTarget target(facets_, {facet}, facet);
+      const std::uint64_t row = first + item / reference_randomisations;
+      const SampleTarget target(facets_, {facets_.at(row)}, row);
       sampler_.sample(target, static_cast<std::uint32_t>(item % reference_randomisations), samples, 1, means_[item]);
     });
   }
@@ -40,7 +40,7 @@ class Block {
     constexpr double n = reference_randomisations;
     for (std::size_t i = 0; i < count; ++i) {
       const std::size_t facet = first + i;
-      const double area = facets_.area[facet];
+      const double area = static_cast<float>(glm::length(area_vector(facets_.corners(facets_.at(facet)))));
       const auto* parts = &means_[i * reference_randomisations];
       const auto mean = [&](std::vector<double> SampleMeans::*field, std::size_t k) {
         double sum = 0.0;
@@ -64,7 +64,7 @@ class Block {
           auto& balance = report.balance[s][b];
           balance.incident +=
               area * (mean(&SampleMeans::direct, 2 * s * bands_ + b) + mean(&SampleMeans::direct, (2 * s + 1) * bands_ + b));
-          (facet < facets_.plant_facets ? balance.leaves : balance.ground) += area * absorbed;
+          (facet < facets_.plant_facets() ? balance.leaves : balance.ground) += area * absorbed;
         }
       }
     }
@@ -75,26 +75,25 @@ class Block {
   }
 
  private:
-  const FacetScene& facets_;
+  const RayScene& facets_;
   const PathSampler& sampler_;
   std::size_t states_, bands_;
   std::vector<SampleMeans> means_;  ///< [count][randomisation]
   std::vector<float> irradiance_, sunlit_, variance_;
 };
 
-}  // namespace
-
-SolveReport trace_reference(const Scene& scene, const FacetScene& facets, const ReferenceSettings& settings, IrradianceSink& sink,
-                            Progress& progress) {
+template <class Facets>
+SolveReport trace(const Scene& scene, const Facets& facets, const ReferenceSettings& settings, IrradianceSink& sink, Progress& progress) {
   SolveReport report;
   report.method = "reference";
-  const std::size_t states = scene.states.size(), bands = scene.band_count(), n = facets.size();
+  const std::size_t states = scene.states.size(), bands = scene.band_count();
   report.balance.assign(states, std::vector<Balance>(bands));
   tbb::task_arena arena(settings.threads > 0 ? settings.threads : tbb::task_arena::automatic);
 
   Stopwatch building;
   const RayScene rays(facets);
-  const PathSampler sampler(scene, facets, rays, settings.seed);
+  const std::size_t n = rays.facet_count();
+  const PathSampler sampler(scene, rays, settings.seed);
   add_seconds(report.timings, "build the tree of rays", building.seconds());
 
   Stopwatch tracing;
@@ -104,7 +103,7 @@ SolveReport trace_reference(const Scene& scene, const FacetScene& facets, const 
       std::clamp<std::size_t>(std::min<std::size_t>(65536 / (samples * reference_randomisations),
                                                     (std::size_t{1} << 20) / (reference_randomisations * states * (5 * bands + 2))),
                               1, 4096);
-  Block block(facets, sampler, std::min(block_size, n));
+  Block block(rays, sampler, std::min(block_size, n));
   std::uint64_t ray_count = 0;
   for (std::size_t first = 0; first < n; first += block_size) {
     progress.check();
@@ -131,6 +130,18 @@ SolveReport trace_reference(const Scene& scene, const FacetScene& facets, const 
                    {"stacked pairs", rays.stacked_pairs()}};
   report.memory = {{"tree of rays", rays.bytes()}};
   return report;
+}
+
+}  // namespace
+
+SolveReport trace_reference(const Scene& scene, const FacetScene& facets, const ReferenceSettings& settings, IrradianceSink& sink,
+                            Progress& progress) {
+  return trace(scene, facets, settings, sink, progress);
+}
+
+SolveReport trace_reference(const Scene& scene, const FacetRows& rows, const ReferenceSettings& settings, IrradianceSink& sink,
+                            Progress& progress) {
+  return trace(scene, rows, settings, sink, progress);
 }
 
 }  // namespace sunfleck

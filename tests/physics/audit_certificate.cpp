@@ -66,7 +66,7 @@ Certificate check(const Scene& scene, const Run& run, const OrganTotals& all, co
       some.plant_irradiance[b] += all.irradiance[o * 4 + b] + all.irradiance[o * 4 + 2 + b];
     }
   }
-  return certify(scene, rows, run.facets, chosen, some, run.report.balance, settings, silent());
+  return certify(scene, rows, RayScene(run.facets), chosen, some, run.report.balance, settings, silent());
 }
 
 }  // namespace
@@ -157,4 +157,54 @@ TEST_CASE("certificate: a scene of ground alone has nothing to check") {
   const auto c = check(scene, run, totals_of(run), {});
   CHECK(c.organs.empty());
   CHECK(c.rmse == std::vector<double>{0, 0});
+}
+
+TEST_CASE("certificate: through copies it finds what it finds through facets") {
+  auto scene = canopy({0.08, 0.45}, {0.04, 0.40});
+  Stance mirrored;
+  mirrored.position = {1.1, 0.2, 0.1};
+  mirrored.turn_deg = 50;
+  mirrored.mirror = true;
+  scene.plants[0].placements.push_back(placed(mirrored));
+  const auto run = trace(scene, 64);
+  const PlacedScene copies = place(scene);
+  const FacetRows rows(scene, copies);
+  CertificateSettings settings;
+  settings.organs = 300;
+  settings.rays = 2000000;
+  const auto chosen = choose_organs(rows, settings);
+  REQUIRE(chosen.size() == 300);  // all
+  OrganTotals none(1, 2, {});
+  for (const auto& c : chosen) none.organs.push_back(c.organ);
+  none = OrganTotals(1, 2, none.organs);
+  none.area.assign(300, 1.0);
+  const auto flat = certify(scene, rows, RayScene(run.facets), chosen, none, run.report.balance, settings, silent());
+  const auto placed_too = certify(scene, rows, RayScene(rows), chosen, none, run.report.balance, settings, silent());
+  // The same random numbers: paths part only where rounding does, at most a few per cent of them.
+  double difference = 0, noise = 0;
+  for (std::size_t i = 0; i < flat.reference.size(); ++i) {
+    difference += std::pow(flat.reference[i] - placed_too.reference[i], 2);
+    noise += std::pow(flat.standard_error[i], 2);
+  }
+  CHECK(difference < 0.1 * noise);
+}
+
+TEST_CASE("reference: through copies it gives what it gives through facets") {
+  auto scene = canopy({0.08, 0.45}, {0.04, 0.40});
+  scene.plants[0].placements.push_back(placed({{0.3, 0.7, 0.2}, 50}));
+  const auto run = trace(scene, 64);
+  const PlacedScene copies = place(scene);
+  const FacetRows rows(scene, copies);
+  Kept kept(1, run.facets.size(), 2);
+  ReferenceSettings settings;
+  settings.samples = 64;
+  const auto report = trace_reference(scene, rows, settings, kept, silent());
+  CHECK(kept.complete());
+  double difference = 0, noise = 0;
+  for (std::size_t f = 0; f < run.facets.size(); ++f) {
+    difference += std::pow(kept.on(f, 0, 1) - run.kept.on(f, 0, 1), 2);
+    noise += kept.variance_of(f, 1);
+  }
+  CHECK(difference < 0.3 * noise);
+  CHECK(report.balance[0][1].leaves == Approx(run.report.balance[0][1].leaves).epsilon(2e-3));
 }

@@ -82,11 +82,11 @@ TEST_CASE("reference: Beer-Lambert through small black leaves of all angles") {
   for (const double zenith : {0.0, 60.0}) {
     point_sun(scene, {std::sin(zenith * std::numbers::pi / 180), 0, std::cos(zenith * std::numbers::pi / 180)}, 1);
     const RayScene rays(facets);
-    const PathSampler sampler(scene, facets, rays, 1);
-    std::vector<std::uint32_t> ground;
-    for (std::size_t f = facets.plant_facets; f < facets.size(); ++f) ground.push_back(static_cast<std::uint32_t>(f));
+    const PathSampler sampler(scene, rays, 1);
+    std::vector<CopyFacet> ground;
+    for (std::size_t f = facets.plant_facets; f < facets.size(); ++f) ground.push_back(rays.at(f));
     SampleMeans means;
-    sampler.sample(SampleTarget(facets, ground, 0), 0, 8192, 1, means);
+    sampler.sample(SampleTarget(rays, ground, 0), 0, 8192, 1, means);
     // one canopy of 20,000 leaves scatters by about .005 about the mean of all canopies, finite leaves add about as much
     CHECK(means.sunlit[0] == Approx(std::exp(-leaf_area_index / (2 * std::cos(zenith * std::numbers::pi / 180)))).margin(0.02));
   }

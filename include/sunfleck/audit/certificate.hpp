@@ -8,9 +8,9 @@
 #include <sunfleck/result/certificate.hpp>
 #include <sunfleck/result/organ_totals.hpp>
 #include <sunfleck/scene/facet_rows.hpp>
-#include <sunfleck/scene/facets.hpp>
 #include <sunfleck/scene/scene.hpp>
 #include <sunfleck/scene/solution.hpp>
+#include <sunfleck/visibility/rays.hpp>
 
 namespace sunfleck {
 
@@ -47,8 +47,9 @@ std::vector<ChosenOrgan> choose_organs(const FacetRows& rows, const CertificateS
 /// Work is counted in rays, not seconds, so that every machine gives the same certificate: a number that depends on the number of
 /// facets alone, some per cent more to find out what a path costs, and the tree of rays (1.3 microseconds a facet): below 2 s on one core
 /// up to 10^5 facets, and some 4 s with 10^6, where solving takes far longer. Fewer organs are checked (at least 64) where 16 samples of
-/// each would cost more. Same bits for any number of threads. A scene without plant organs yields measures of zero and no organs.
-Certificate certify(const Scene& scene, const FacetRows& rows, const FacetScene& facets, const std::vector<ChosenOrgan>& chosen,
+/// each would cost more. `rays` are of the same scene, written out or by copies; it is built by the caller. Same bits for any number of
+/// threads. A scene without plant organs yields measures of zero and no organs.
+Certificate certify(const Scene& scene, const FacetRows& rows, const RayScene& rays, const std::vector<ChosenOrgan>& chosen,
                     const OrganTotals& solved, const std::vector<std::vector<Balance>>& balance, const CertificateSettings& settings,
                     Progress& progress);
 

@@ -16,15 +16,15 @@ class SampleTarget {
  public:
   SampleTarget() = default;
   /// `key` chooses the random numbers: two targets with different keys are independent.
-  SampleTarget(const FacetScene& scene, std::vector<std::uint32_t> facets, std::uint64_t key);
+  SampleTarget(const RayScene& rays, std::vector<CopyFacet> facets, std::uint64_t key);
 
   double area() const { return cumulative_.empty() ? 0.0 : cumulative_.back(); }  ///< [m^2]
   std::uint64_t key() const { return key_; }
   /// The facet at the fraction x of the area, and where in [0, 1) x lies within it.
-  std::uint32_t facet_at(double x, double& within) const;
+  CopyFacet facet_at(double x, double& within) const;
 
  private:
-  std::vector<std::uint32_t> facets_;
+  std::vector<CopyFacet> facets_;
   std::vector<double> cumulative_;
   std::uint64_t key_ = 0;
 };
@@ -49,8 +49,8 @@ struct SampleMeans {
 /// sequences per target and randomisation, the rest independent; numbers depend on (seed, key of the target, randomisation, sample) alone.
 class PathSampler {
  public:
-  /// `rays` over the same facets; all must outlive the sampler.
-  PathSampler(const Scene& scene, const FacetScene& facets, const RayScene& rays, std::uint64_t seed);
+  /// Light of `scene` on the facets of `rays`; both must outlive the sampler.
+  PathSampler(const Scene& scene, const RayScene& rays, std::uint64_t seed);
   ~PathSampler();
 
   std::size_t states() const;

@@ -6,6 +6,7 @@
 #include <sunfleck/core/progress.hpp>
 #include <sunfleck/scene/scene.hpp>
 #include <sunfleck/scene/solution.hpp>
+#include <sunfleck/scene/facet_rows.hpp>
 #include <sunfleck/scene/facets.hpp>
 
 namespace sunfleck {
@@ -26,6 +27,9 @@ inline constexpr std::uint32_t reference_randomisations = 16;
 /// times the share found by particles sent from sun and sky (PathSampler::escape_share), so that the residual is a true check: about
 /// the noise of both. Same bits for any number of threads. Throws Stopped if the user cancels.
 SolveReport trace_reference(const Scene& scene, const FacetScene& facets, const ReferenceSettings& settings, IrradianceSink& sink,
+                            Progress& progress);
+/// The same without writing copies out: memory of the plants, the ground and some 500 bytes a copy.
+SolveReport trace_reference(const Scene& scene, const FacetRows& rows, const ReferenceSettings& settings, IrradianceSink& sink,
                             Progress& progress);
 
 }  // namespace sunfleck
