@@ -103,6 +103,14 @@ void add_solve(CLI::App& verb, SolveOptions& o) {
   verb.add_option("--seed", o.seed, "seed of all sampling (default 1)")->type_name("N")->check(count_from(0));
   verb.add_flag_callback(
       "--no-certificate", [&o] { o.certificate = false; }, "skip the check of the result against path tracing; the result then says so");
+  verb.add_option("--certificate-organs", o.certificate_organs,
+                  "organs that the check path-traces (default 240): more of them narrow its interval")
+      ->type_name("N")
+      ->check(count_from(2, 1e6));
+  verb.add_option("--certificate-rays", o.certificate_rays,
+                  "rays that the check spends, about (default 0.6 to 2 million, by the size of the scene): more of them lessen its noise")
+      ->type_name("N")
+      ->check(count_from(1, 1e12));
   verb.footer(
       "The table on standard output holds, per lighting state and band, incident and absorbed light [W, or umol/s where the scene says "
       "so],\n"

@@ -127,8 +127,8 @@ int verb_solve(const SolveOptions& options, Progress& progress) {
   std::optional<Certificate> certificate;
   if (!chosen.empty()) {
     const Stopwatch watch;
-    certificate = certify(scene, rows, facets ? RayScene(*facets) : RayScene(rows), chosen, writer.totals(), report.balance, checking,
-                          progress);
+    certificate =
+        certify(scene, rows, facets ? RayScene(*facets) : RayScene(rows), chosen, writer.totals(), report.balance, checking, progress);
     add_seconds(report.timings, "certificate", watch.seconds());
   }
   progress.check();

@@ -63,10 +63,13 @@ class Comparing {
   }
 
   ErrorTable organs() const {
-    const std::size_t m = r_.organ_count();
-    const auto area = r_.rows<float>("organs/area", 0, m);
-    const auto structure = r_.rows<std::uint32_t>("organs/structure", 0, m);
-    return table("organs", "variance/organs", m, true, [&](std::size_t o) { return structure[o] == no_parent ? 0.0 : double{area[o]}; });
+    return table("organs", "variance/organs", r_.organ_count(), true, [&](std::size_t first, std::size_t count) {
+      auto weights = r_.rows<float>("organs/area", first, count);
+      const auto structure = r_.rows<std::uint32_t>("organs/structure", first, count);
+      for (std::size_t i = 0; i < count; ++i)
+        if (structure[i] == no_parent) weights[i] = 0.0f;
+      return weights;
+    });
   }
 
   ErrorTable facets() const {
@@ -74,11 +77,16 @@ class Comparing {
     if (n == 0) return {};
     for (const auto* file : {&x_, &r_})
       if (!file->has("facets/absorbed") || (any_irradiance_ && !file->has("facets/irradiance"))) return {};
-    const auto structure = r_.rows<std::uint32_t>("organs/structure", 0, r_.organ_count());
-    const auto area = r_.rows<float>("facets/area", 0, n);
-    const auto organ = r_.facet_organs(0, n);
-    return table("facets", "variance/facets", n, false,
-                 [&](std::size_t f) { return structure[organ[f]] == no_parent ? 0.0 : double{area[f]}; });
+    return table("facets", "variance/facets", n, false, [&](std::size_t first, std::size_t count) {
+      auto weights = r_.rows<float>("facets/area", first, count);
+      const auto organ = r_.facet_organs(first, count);
+      // Facets that follow each other have organs that do: read those only.
+      const auto [low, high] = std::minmax_element(organ.begin(), organ.end());
+      const auto structure = r_.rows<std::uint32_t>("organs/structure", *low, *high - *low + 1);
+      for (std::size_t i = 0; i < count; ++i)
+        if (structure[organ[i] - *low] == no_parent) weights[i] = 0.0f;
+      return weights;
+    });
   }
 
  private:
@@ -92,10 +100,13 @@ class Comparing {
     if (x_.organ_count() != r_.organ_count()) differ(fmt::format("{} organs", x_.organ_count()), fmt::format("{}", r_.organ_count()));
     if (x_.facet_count() != r_.facet_count() && x_.facet_count() > 0 && r_.facet_count() > 0)
       differ(fmt::format("{} facets", x_.facet_count()), fmt::format("{}", r_.facet_count()));
-    const auto a = x_.rows<float>("organs/area", 0, x_.organ_count()), b = r_.rows<float>("organs/area", 0, r_.organ_count());
-    for (std::size_t o = 0; o < a.size(); ++o)
-      if (std::abs(a[o] - b[o]) > 1e-4f * std::max(a[o], b[o]))
-        differ(fmt::format("organ {} with an area of {} m^2", o, a[o]), fmt::format("{} m^2", b[o]));
+    for (std::size_t first = 0; first < r_.organ_count(); first += rows_at_once) {
+      const std::size_t count = std::min(rows_at_once, r_.organ_count() - first);
+      const auto a = x_.rows<float>("organs/area", first, count), b = r_.rows<float>("organs/area", first, count);
+      for (std::size_t o = 0; o < count; ++o)
+        if (std::abs(a[o] - b[o]) > 1e-4f * std::max(a[o], b[o]))
+          differ(fmt::format("organ {} with an area of {} m^2", first + o, a[o]), fmt::format("{} m^2", b[o]));
+    }
   }
 
   /// Absorbed or irradiance, per state and band and for all states together.
@@ -119,13 +130,15 @@ class Comparing {
       }
   }
 
-  /// `power`: absorbed is in W and becomes W m^-2 (and its variance likewise). `weight(row)` is its area, 0 = not compared.
-  template <class Weight>
-  ErrorTable table(const std::string& group, const std::string& variance, std::size_t rows, bool power, Weight weight) const {
+  /// `power`: absorbed is in W and becomes W m^-2 (and its variance likewise). `weights(first, count)`
+  /// are the areas of rows, 0 = not compared.
+  template <class Weights>
+  ErrorTable table(const std::string& group, const std::string& variance, std::size_t rows, bool power, Weights weights) const {
     std::vector<Sums> absorbed(states_ * bands_), irradiance(states_ * bands_);
     for (std::size_t s = 0; s < states_; ++s)
       for (std::size_t first = 0; first < rows; first += rows_at_once) {
         const std::size_t count = std::min(rows_at_once, rows - first);
+        const std::vector<float> areas = weights(first, count);
         const auto read = [&](const Result& file, const std::string& name) { return file.state_rows<float>(name, s, first, count); };
         const auto x = read(x_, group + "/absorbed"), r = read(r_, group + "/absorbed");
         std::vector<float> no_values;
@@ -133,7 +146,7 @@ class Comparing {
         const auto e_x = any_irradiance_ ? read(x_, group + "/irradiance") : no_values,
                    e_r = any_irradiance_ ? read(r_, group + "/irradiance") : no_values;
         for (std::size_t i = 0; i < count; ++i) {
-          const double w = weight(first + i);
+          const double w = areas[i];
           if (w <= 0) continue;
           const double scale = power ? 1.0 / w : 1.0;
           for (std::size_t b = 0; b < bands_; ++b) {

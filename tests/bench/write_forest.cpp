@@ -1,5 +1,5 @@
-// Writes a result of 1,000 copies of one tree of 10^5 facets (2 facets an organ) from rows that are made up: seconds and memory of the writer
-// alone. Arguments: file, copies (1000), facets of a tree (100000), "facets" or "organs" (organs), "constant" or "noise" (noise).
+// Writes a result of 1,000 copies of one tree of 10^5 facets (2 facets an organ) from rows that are made up: seconds and memory of the
+// writer alone. Arguments: file, copies (1000), facets of a tree (100000), "facets" or "organs" (organs), "constant" or "noise" (noise).
 #include <cstdio>
 #include <cstdlib>
 #include <string>
@@ -25,8 +25,9 @@ Scene forest(std::size_t copies, std::size_t facets) {
   RandomStream random(1);
   for (std::uint32_t i = 0; i < facets / 2; ++i) {
     plant->structures.push_back({0, leaf, "", {}, {}});
-    plant->shapes.push_back({i + 1, 0, 0, 2, 0, Affine::translate({random.next() * 4, random.next() * 4, 1 + random.next() * 8}) *
-                                                  Affine::turn(6.28 * random.next())});
+    plant->shapes.push_back(
+        {i + 1, 0, 0, 2, 0,
+         Affine::translate({random.next() * 4, random.next() * 4, 1 + random.next() * 8}) * Affine::turn(6.28 * random.next())});
   }
   Scene scene;
   scene.bands = {"PAR", "NIR"};

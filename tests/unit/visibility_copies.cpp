@@ -93,8 +93,8 @@ TEST_CASE("Facets of a copy that lie on each other keep their order in every cop
   upside_down.tilt_deg = 180;
   mirrored.position = {20, 0, 0};
   mirrored.mirror = true;
-  scene.plants.push_back(plant_entry("p", make_plant({leaf(0), leaf(1e-9), leaf(0)}), 0, {sunfleck::placed({}), sunfleck::placed(upside_down),
-                                                                                         sunfleck::placed(mirrored)}));
+  scene.plants.push_back(plant_entry("p", make_plant({leaf(0), leaf(1e-9), leaf(0)}), 0,
+                                     {sunfleck::placed({}), sunfleck::placed(upside_down), sunfleck::placed(mirrored)}));
   const FacetScene facets = expand(scene);
   const PlacedScene placed = place(scene);
   const FacetRows rows(scene, placed);

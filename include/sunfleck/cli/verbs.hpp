@@ -19,6 +19,8 @@ struct SolveOptions {
   std::optional<std::uint32_t> samples;  ///< reference method, per facet
   int threads = 0;
   bool certificate = true;
+  std::optional<std::uint32_t> certificate_organs;  ///< organs that are path-traced
+  std::optional<std::uint64_t> certificate_rays;    ///< rays to spend on them, about
 };
 int verb_solve(const SolveOptions& options, Progress& progress);
 
