@@ -44,13 +44,17 @@ CopyFacet SampleTarget::facet_at(double x, double& within) const {
   return facets_[i];
 }
 
+namespace {
+
 /// The facet's plane, looked up once for all that happens at a point of it.
-struct Plane {
-  explicit Plane(const Triangle& t) : corners(t), normal(glm::normalize(area_vector(t))) {}
+struct FacetPlane {
+  explicit FacetPlane(const Triangle& t) : corners(t), normal(glm::normalize(area_vector(t))) {}
   Vec3 point(double u, double v) const { return corners[0] + u * (corners[1] - corners[0]) + v * (corners[2] - corners[0]); }
   Triangle corners;
   Vec3 normal;
 };
+
+}  // namespace
 
 struct PathSampler::Impl {
   Impl(const Scene& scene, const RayScene& r, std::uint64_t s);
@@ -63,7 +67,7 @@ struct PathSampler::Impl {
     Vec3 direction(double u, double v) const;
   };
 
-  Plane plane(CopyFacet facet) const { return Plane(rays.corners(facet)); }
+  FacetPlane plane(CopyFacet facet) const { return FacetPlane(rays.corners(facet)); }
   std::size_t material(CopyFacet facet) const { return rays.material(facet) * bands; }
 
   /// Calls hit(state, on_front, irradiance factor: cosine to the sun, 0 < factor) for each state whose sun reaches the point.
@@ -151,7 +155,7 @@ void PathSampler::Impl::walk(Vec3 p, Vec3 d, CopyFacet facet, double* weight, Ra
     const RayHit met = rays.first_hit(p, d, facet);
     if (!met) return exit(bounce, d);
     facet = met.where();
-    const Plane here = plane(facet);
+    const FacetPlane here = plane(facet);
     p = here.point(met.u, met.v);
     Vec3 n = here.normal;
     hit(bounce, facet, p, n, met.front);
@@ -224,7 +228,7 @@ void PathSampler::Impl::add_paths(const SampleTarget& target, std::uint64_t stre
     double x;
     const CopyFacet facet = target.facet_at(sobol_owen(i, 0, scramble), x);
     const double root = std::sqrt(x), y = sobol_owen(i, 1, scramble);
-    const Plane start = plane(facet);
+    const FacetPlane start = plane(facet);
     const Vec3 p = start.point(root * (1.0 - y), root * y), n = start.normal;
     RandomStream random(mix(stream, i));
     std::fill(here.begin(), here.end(), 0.0);
@@ -246,7 +250,7 @@ void PathSampler::Impl::add_sun(const SampleTarget& target, std::uint64_t stream
     double x;
     const CopyFacet facet = target.facet_at(sobol_owen(i, 0, scramble), x);
     const double root = std::sqrt(x), y = sobol_owen(i, 1, scramble);
-    const Plane start = plane(facet);
+    const FacetPlane start = plane(facet);
     sun_at(start.point(root * (1.0 - y), root * y), facet, start.normal, sobol_owen(i, 2, scramble), sobol_owen(i, 3, scramble), sums.rays,
            [&](std::size_t s, bool on_front, double factor) {
              const std::size_t side = 2 * s + (on_front ? 0 : 1);
