@@ -25,11 +25,11 @@ struct OriginalLight {
 struct Members {
   Originals found;
   std::vector<OriginalLight> originals;
-  std::vector<Similarity> maps;  ///< per member
-  CopyScene copies;              ///< per member, with the ground
+  std::vector<Similarity> maps;    ///< per member
+  CopyScene copies;                ///< per member, with the ground
   std::uint32_t ground_split = 1;  ///< k: every facet of the ground stands in `copies` as k * k parts, one after the other
-  std::uint64_t merged = 0;      ///< copies that were put together with others
-  double tangled = 0;            ///< mean share of lines inside members that meet another one
+  std::uint64_t merged = 0;        ///< copies that were put together with others
+  double tangled = 0;              ///< mean share of lines inside members that meet another one
 
   std::size_t size() const { return maps.size(); }
   const OriginalLight& original_of(std::size_t member) const { return originals[found.members[member].original]; }

@@ -23,8 +23,8 @@ struct InstantiationPlan {
 InstantiationPlan plan_instantiation(const Scene& scene, const PlacedScene& placed, const InstantiationSettings& settings,
                                      Progress& progress);
 
-/// Does anything in a scene repeat so that sharing pays? At least half of the facets of plants are copies of others, and there are enough of
-/// them (20,000) that solving them one by one would take longer than a moment.
+/// Does anything in a scene repeat so that sharing pays? At least half of the facets of plants are copies of others, and there are enough
+/// of them (20,000) that solving them one by one would take longer than a moment.
 bool repeats(const Scene& scene);
 
 /// The densities that a scene of so many facets is solved with.

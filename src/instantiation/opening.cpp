@@ -1,0 +1,269 @@
+#include "instantiation/opening.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+
+#include <tbb/parallel_for.h>
+
+#include <sunfleck/core/memory.hpp>
+#include <sunfleck/core/sampling.hpp>
+
+#include "instantiation/batches.hpp"
+
+namespace sunfleck {
+
+namespace {
+
+constexpr std::uint32_t most_sweeps = 200;
+constexpr std::size_t window_bytes = std::size_t{96} << 20;  // rows of finished copies that wait for their turn
+constexpr std::uint64_t fine_stream = 0x1b9e4d6a7c2f5083ULL;
+
+class Opening {
+ public:
+  Opening(const SceneLight& s, const Light& total, IrradianceSink& sink, SolveReport& report)
+      : s_(s), total_(total), sink_(sink), report_(report) {}
+
+  void open_all() {
+    const auto ground_e = s_.ground_irradiance(&total_, true);  // before the fields change no more
+    std::map<std::size_t, Rows> waiting;
+    std::size_t next_row = 0;
+    std::uint32_t fine_of = no_parent;
+    std::unique_ptr<LineOperator> fine;
+    std::size_t first = 0;
+    while (first < s_.members.maps.size()) {
+      std::vector<std::uint32_t> window;
+      std::size_t bytes = 0;
+      for (; first < s_.members.maps.size() && (window.empty() || bytes < window_bytes); ++first) {
+        window.push_back(static_cast<std::uint32_t>(first));
+        bytes += s_.members.found.originals[s_.members.found.members[first].original].facets * 2 * sizeof(float) * (s_.columns + s_.states);
+      }
+      s_.progress.fraction("opening", static_cast<double>(window.front()) / static_cast<double>(s_.members.maps.size()));
+      std::vector<Rows> rows(placed_rows(window));
+      auto batches = batches_of(s_, window);
+      for (std::size_t begin = 0; begin < batches.size();) {
+        std::size_t end = begin;
+        while (end < batches.size() && batches[end].original == batches[begin].original) ++end;
+        if (fine_of != batches[begin].original) {
+          fine.reset();
+          fine_of = batches[begin].original;
+          fine = std::make_unique<LineOperator>(s_.members.originals[fine_of].elements, s_.density.fine,
+                                                mix(s_.seed, fine_stream, fine_of), s_.progress);
+          if (fine->bytes() > fine_bytes_) fine_bytes_ = fine->bytes();
+        }
+        std::vector<std::vector<Balance>> partial(end - begin);
+        tbb::parallel_for(begin, end, [&](std::size_t q) {
+          if (s_.progress.cancelled()) return;
+          with_width(batches[q].width,
+                     [&](auto constant) { open<decltype(constant)::value>(batches[q], *fine, rows, window.front(), partial[q - begin]); });
+        });
+        s_.progress.check();
+        for (std::size_t q = begin; q < end; ++q) add_balance(batches[q], partial[q - begin]);
+        begin = end;
+      }
+      for (auto& r : rows) {
+        const auto place = r.first;
+        waiting.emplace(place, std::move(r));
+      }
+      while (!waiting.empty() && waiting.begin()->first == next_row) {
+        const Rows& r = waiting.begin()->second;
+        sink_.rows({r.first, r.count, r.irradiance.data(), s_.lights.suns.empty() ? nullptr : r.sunlit.data(), nullptr});
+        next_row += r.count;
+        waiting.erase(waiting.begin());
+      }
+    }
+    report_.memory.emplace_back("fine", fine_bytes_);
+    write_ground(ground_e);
+  }
+
+ private:
+  /// Rows of one copy, as the sink takes them.
+  struct Rows {
+    std::size_t first = 0, count = 0;
+    std::vector<float> irradiance, sunlit;
+  };
+
+  /// Space for the rows of the copies of the members, member by member, part by part.
+  std::vector<Rows> placed_rows(const std::vector<std::uint32_t>& window) {
+    std::vector<Rows> out;
+    row_of_member_.clear();
+    for (const auto m : window) {
+      row_of_member_.push_back(out.size());
+      for (const auto c : s_.members.found.members[m].copies) {
+        Rows r;
+        r.first = s_.placed.copies[c].first_facet;
+        r.count = s_.placed.plant_facets[s_.placed.copies[c].plant];
+        r.irradiance.assign(s_.states * r.count * 2 * s_.bands, 0.0f);
+        if (!s_.lights.suns.empty()) r.sunlit.assign(s_.states * r.count * 2, 0.0f);
+        out.push_back(std::move(r));
+      }
+    }
+    return out;
+  }
+
+  template <int width>
+  void open(const Batch& b, const LineOperator& fine, std::vector<Rows>& rows, std::uint32_t window_first, std::vector<Balance>& balance) {
+    const auto& original = s_.members.originals[b.original];
+    const auto& e = original.elements;
+    const std::size_t sides = 2 * e.size();
+    LaneField<width> field, source(sides, Lanes<width>{}), radiosity;
+    incoming<width>(s_, b, *original.coarse, stored_ends(s_, b), &total_, true, field);
+    add_outside<width>(*original.coarse, field, source);
+    add_sun<width>(s_, b, source);
+    solve_inside<width>(*original.coarse, e.material, optics_of<width>(s_, b), source, static_cast<float>(s_.density.inner_tolerance),
+                        most_sweeps, radiosity);
+
+    std::vector<std::vector<RayEnd>> ends(b.members.size(), std::vector<RayEnd>(fine.points.size()));
+    std::vector<const RayEnd*> pointers;
+    for (std::size_t j = 0; j < b.members.size(); ++j) {
+      s_.look_from(b.members[j], fine, ends[j].data());
+      pointers.push_back(ends[j].data());
+    }
+    // the sky's light first, for the balance
+    LaneField<width> sky(sides, Lanes<width>{}), scattered(sides, Lanes<width>{});
+    incoming<width>(s_, b, fine, pointers, nullptr, true, field);
+    add_outside<width>(fine, field, sky);
+    incoming<width>(s_, b, fine, pointers, &total_, false, field);
+    add_outside<width>(fine, field, scattered);
+    for (std::size_t i = 0; i < e.size(); ++i) {
+      if (fine.lines[i] == 0) continue;
+      const float share = 1.0f / static_cast<float>(fine.lines[i]);
+      for (std::size_t side = 2 * i; side < 2 * i + 2; ++side) add_row<width>(fine.inside, side, share, radiosity.data(), scattered[side]);
+    }
+    balance.assign(b.columns, Balance{});
+    escaped<width>(b, fine, pointers, radiosity, balance);
+    for (std::size_t j = 0; j < b.members.size(); ++j)
+      member_rows<width>(b, j, fine, sky, scattered, rows, row_of_member_[b.members[j] - window_first], balance);
+  }
+
+  /// Radiosity that ends in the sky: sum of area * B * (lines of the side that do) / W.
+  template <int width>
+  void escaped(const Batch& b, const LineOperator& op, const std::vector<const RayEnd*>& ends, const LaneField<width>& radiosity,
+               std::vector<Balance>& balance) const {
+    const auto& e = s_.members.originals[b.original].elements;
+    std::vector<float> open(op.fields());
+    for (std::size_t j = 0; j < b.members.size(); ++j) {
+      for (std::size_t f = 0; f < op.fields(); ++f) {
+        std::uint32_t n = 0;
+        for (auto k = op.point_start[f]; k < op.point_start[f + 1]; ++k) n += ends[j][k].is_sky();
+        open[f] = n ? static_cast<float>(n) / static_cast<float>(op.point_start[f + 1] - op.point_start[f]) : 0.0f;
+      }
+      const double scale = s_.members.maps[b.members[j]].scale * s_.members.maps[b.members[j]].scale;
+      for (std::size_t side = 0; side < radiosity.size(); ++side) {
+        if (op.lines[side / 2] == 0) continue;
+        float lines = 0;
+        for (auto k = op.outside.start[side]; k < op.outside.start[side + 1]; ++k)
+          lines += static_cast<float>(op.outside.count[k]) * open[op.outside.column[k]];
+        if (lines == 0) continue;
+        const double area = scale * e.area[side / 2] * lines / op.lines[side / 2];
+        for (std::size_t c = 0; c < b.columns; ++c) balance[c].escaped += area * radiosity[side][j * b.columns + c];
+      }
+    }
+  }
+
+  template <int width>
+  void member_rows(const Batch& b, std::size_t j, const LineOperator& fine, const LaneField<width>& sky, const LaneField<width>& scattered,
+                   std::vector<Rows>& rows, std::size_t first_row, std::vector<Balance>& balance) {
+    const std::uint32_t m = b.members[j];
+    const auto& original = s_.members.originals[b.original];
+    const auto& e = original.elements;
+    const auto& s = e.surface;
+    const double scale = s_.members.maps[m].scale * s_.members.maps[m].scale;
+    for (std::size_t t = 0; t < s.size(); ++t) {
+      if (s.split[t] == 0) continue;
+      const std::uint32_t facet = e.order[t];
+      const auto part = static_cast<std::size_t>(std::upper_bound(original.facet_of_part.begin(), original.facet_of_part.end(), facet) -
+                                                 original.facet_of_part.begin() - 1);
+      Rows& out = rows[first_row + part];
+      const std::size_t i = facet - original.facet_of_part[part];
+      const std::uint32_t begin = s.first_cell[t], end = s.first_cell[t + 1];
+      const float share = 1.0f / static_cast<float>(end - begin);
+      const auto& optics = s_.scene.optics[original.facet_material[facet]];
+      const double area = scale * s.cell_area[t] * (end - begin);
+      for (std::size_t c = 0; c < b.columns; ++c) {
+        const std::size_t column = b.first_column + c, state = column / s_.bands, band = column % s_.bands, lane = j * b.columns + c;
+        const auto sun = s_.lights.sun_of_state[state];
+        const float sun_strength = sun == LightSources::none ? 0.0f : static_cast<float>(s_.scene.states[state].sun->irradiance[band]);
+        double absorbed = 0;
+        for (std::size_t side = 0; side < 2; ++side) {
+          float direct = 0, rest = 0, lit = 0;
+          for (auto cell = begin; cell < end; ++cell) {
+            const std::size_t from = 2 * std::size_t{fine.stand_in[e.element_of_cell[cell]]} + side;
+            direct += share * sky[from][lane];
+            rest += share * scattered[from][lane];
+          }
+          if (sun != LightSources::none) {
+            const Vec3 d = s_.members.maps[m].direction_back(s_.lights.suns[sun]->direction);
+            const double cosine = s.normal[0][t] * d.x + s.normal[1][t] * d.y + s.normal[2][t] * d.z;
+            if ((cosine > 0) == (side == 0)) {
+              for (auto cell = begin; cell < end; ++cell)
+                lit += share * static_cast<float>(s_.lit[sun].lit[s_.lit[sun].first[m] + cell]) / 255.0f;
+              direct += lit * static_cast<float>(std::fabs(cosine)) * sun_strength;
+            }
+            if (band == 0) out.sunlit[(state * out.count + i) * 2 + side] = lit;
+          }
+          out.irradiance[((state * out.count + i) * 2 + side) * s_.bands + band] = direct + rest;
+          balance[c].incident += area * direct;
+          absorbed += (1.0 - (side == 0 ? optics.reflectance_front[band] : optics.reflectance_back[band]) - optics.transmittance[band]) *
+                      (double{direct} + rest);
+        }
+        balance[c].leaves += area * absorbed;
+      }
+    }
+  }
+
+  void add_balance(const Batch& b, const std::vector<Balance>& partial) {
+    for (std::size_t c = 0; c < b.columns; ++c) {
+      auto& out = report_.balance[(b.first_column + c) / s_.bands][(b.first_column + c) % s_.bands];
+      out.incident += partial[c].incident;
+      out.leaves += partial[c].leaves;
+      out.escaped += partial[c].escaped;
+    }
+  }
+
+  void write_ground(const std::vector<float>& e) {
+    const std::size_t n = s_.placed.ground.size();
+    if (n == 0) return;
+    std::vector<float> b = e;
+    s_.reflect_from_ground(b);
+    const auto& optics = s_.scene.ground->optics;
+    const std::size_t parts = std::size_t{s_.members.ground_split} * s_.members.ground_split;
+    const float share = 1.0f / static_cast<float>(parts);
+    std::vector<float> irradiance(s_.states * n * 2 * s_.bands, 0.0f), sunlit(s_.lights.suns.empty() ? 0 : s_.states * n * 2, 0.0f);
+    for (std::size_t part = 0; part < n * parts; ++part)
+      for (std::size_t c = 0; c < s_.columns; ++c) {
+        const std::size_t f = part / parts, state = c / s_.bands, band = c % s_.bands;
+        auto& balance = report_.balance[state][band];
+        for (std::size_t side = 0; side < 2; ++side) {
+          const std::size_t i = 2 * part + side;
+          const float value = e[i * s_.columns + c];
+          irradiance[((state * n + f) * 2 + side) * s_.bands + band] += share * value;
+          const double area = s_.ground.area[part];
+          balance.incident += area * s_.ground_direct(i, c);
+          balance.ground +=
+              area * value *
+              (1.0 - (side == 0 ? optics.reflectance_front[band] : optics.reflectance_back[band]) - optics.transmittance[band]);
+          balance.escaped += area * b[i * s_.columns + c] * s_.ground.sky_seen[i];
+          if (const auto sun = s_.lights.sun_of_state[state]; sun != LightSources::none && band == 0)
+            sunlit[(state * n + f) * 2 + side] += share * s_.ground.sunlit[sun][i];
+        }
+      }
+    sink_.rows({s_.placed.first_ground_facet, n, irradiance.data(), s_.lights.suns.empty() ? nullptr : sunlit.data(), nullptr});
+  }
+
+  const SceneLight& s_;
+  const Light& total_;
+  IrradianceSink& sink_;
+  SolveReport& report_;
+  std::vector<std::size_t> row_of_member_;  ///< of the window
+  std::size_t fine_bytes_ = 0;
+};
+
+}  // namespace
+
+void open_copies(const SceneLight& s, const Light& light, IrradianceSink& sink, SolveReport& report) {
+  Opening(s, light, sink, report).open_all();
+}
+
+}  // namespace sunfleck

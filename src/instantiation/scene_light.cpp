@@ -1,0 +1,177 @@
+#include "instantiation/scene_light.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <sunfleck/core/memory.hpp>
+#include <sunfleck/core/sampling.hpp>
+#include <sunfleck/instantiation/plan.hpp>
+
+namespace sunfleck {
+
+namespace {
+
+constexpr std::uint64_t sun_stream = 0x5a6c3e1f9b7d2048ULL, ground_stream = 0x2e8b7a4d1c6f3095ULL;
+
+}  // namespace
+
+SceneLight::SceneLight(const Scene& a_scene, const PlacedScene& a_placed, const InstantiationSettings& settings, Progress& a_progress)
+    : scene(a_scene),
+      placed(a_placed),
+      density(adapted(settings.density, a_placed.facets)),
+      seed(settings.seed),
+      progress(a_progress),
+      states(a_scene.states.size()),
+      bands(a_scene.band_count()),
+      columns(states * bands),
+      lights(light_sources(a_scene.states)),
+      members(make_members(a_scene, a_placed, density.coarse, density.elements_per_organ, seed, a_progress)) {}
+
+void SceneLight::project_sun(SolveReport& report) {
+      double pitch = 0;
+  for (std::size_t m = 0; m < members.maps.size(); ++m) {
+    const double organ = members.original_of(m).elements.organ_area * members.maps[m].scale * members.maps[m].scale;
+    const double own = std::sqrt(0.5 * organ / (density.sun_lines_per_organ / density.sun_samples));
+    pitch = pitch == 0 ? own : std::min(pitch, own);
+  }
+  std::uint64_t fragments = 0;
+  for (const auto* sun : lights.suns) {
+    lit.push_back(lit_cells(members.copies, sun_directions(*sun, density.sun_samples, mix(seed, sun_stream)), pitch,
+                             mix(seed, sun_stream, 1), progress));
+    fragments += lit.back().fragments;
+    report.memory.emplace_back("sun", bytes_of(lit.back().lit));
+  }
+  report.counts.emplace_back("sun_fragments", fragments);
+}
+
+void SceneLight::look_around(SolveReport& report) {
+  around = std::make_unique<Surroundings>(members.copies, members.maps, members.originals);
+  const std::size_t n = members.size();
+  field_start.assign(n + 1, 0);
+  end_start.assign(n + 1, 0);
+  for (std::size_t m = 0; m < n; ++m) {
+    const auto& op = members.coarse_of(m);
+    field_start[m + 1] = field_start[m] + op.fields();
+    end_start[m + 1] = end_start[m] + op.points.size();
+  }
+  ends.resize(end_start.back());
+  tbb::parallel_for(std::size_t{0}, n, [&](std::size_t m) {
+    if (progress.cancelled()) return;
+    look_from(static_cast<std::uint32_t>(m), members.coarse_of(m), ends.data() + end_start[m]);
+  });
+  progress.check();
+  ground = view_from_ground(scene, members.copies.ground, *around, lights,
+                             std::max(8u, density.ground_rays / (members.ground_split * members.ground_split)), density.sun_samples,
+                             mix(seed, ground_stream), progress);
+  report.counts.emplace_back("rays", ends.size() + ground.ends.size());
+  report.memory.emplace_back("rays", around->bytes() + bytes_of(ends) + ground.bytes());
+}
+
+void SceneLight::look_from(std::uint32_t m, const LineOperator& op, RayEnd* out) const {
+  const std::size_t pixels = std::size_t{op.pixels()} * op.pixels();
+  for (std::size_t f = 0; f < op.fields(); ++f) {
+    const Vec3 d = members.maps[m].direction(op.direction(f / pixels));
+    for (auto k = op.point_start[f]; k < op.point_start[f + 1]; ++k) out[k] = around->look(m, op.points[k], d);
+  }
+}
+
+float SceneLight::sky_radiance(const Vec3& d, std::size_t column) const {
+  const auto k = lights.sky_of_state[column / bands];
+  if (k == LightSources::none) return 0.0f;
+  return static_cast<float>(std::numbers::pi * lights.skies[k]->relative_radiance(d) *
+                            scene.states[column / bands].sky->irradiance[column % bands]);
+}
+
+void SceneLight::sun_on_elements(std::uint32_t m, std::size_t sun, std::vector<float>& out) const {
+  const auto& e = members.original_of(m).elements;
+  const auto& s = e.surface;
+  const Vec3 d = members.maps[m].direction_back(lights.suns[sun]->direction);
+  const std::uint8_t* cell_lit = lit[sun].lit.data() + lit[sun].first[m];
+  out.assign(2 * e.size(), 0.0f);
+  for (std::size_t t = 0; t < s.size(); ++t) {
+    if (s.split[t] == 0) continue;
+    const auto cosine = static_cast<float>(s.normal[0][t] * d.x + s.normal[1][t] * d.y + s.normal[2][t] * d.z);
+    const float weight = std::fabs(cosine) * s.cell_area[t] / 255.0f;
+    for (auto c = s.first_cell[t]; c < s.first_cell[t + 1]; ++c)
+      out[2 * e.element_of_cell[c] + (cosine > 0 ? 0 : 1)] += weight * static_cast<float>(cell_lit[c]);
+  }
+  for (std::size_t i = 0; i < out.size(); ++i)
+    if (e.area[i / 2] > 0) out[i] /= e.area[i / 2];
+}
+
+std::vector<float> SceneLight::ground_irradiance(const Light* light, bool direct) const {
+  const std::size_t sides = ground.seen.size();
+  std::vector<float> out(sides * columns, 0.0f);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, sides, 64), [&](const auto& range) {
+    for (std::size_t side = range.begin(); side < range.end(); ++side) {
+      if (!ground.seen[side]) continue;
+      float* e = out.data() + side * columns;
+      if (light) {
+        for (std::uint32_t k = 0; k < ground.rays; ++k) {
+          const RayEnd& end = ground.ends[side * ground.rays + k];
+          if (end.is_sky()) continue;
+          const float* from = end.is_ground() ? light->ground.data() + (2 * std::size_t{end.facet()} + end.field) * columns
+                                              : light->fields.data() + (field_start[end.target] + end.field) * columns;
+          for (std::size_t c = 0; c < columns; ++c) e[c] += from[c];
+        }
+        for (std::size_t c = 0; c < columns; ++c) e[c] /= static_cast<float>(ground.rays);
+      }
+      if (direct)
+        for (std::size_t c = 0; c < columns; ++c) e[c] += ground_direct(side, c);
+    }
+  });
+  return out;
+}
+
+float SceneLight::ground_direct(std::size_t side, std::size_t column) const {
+  const std::size_t state = column / bands, band = column % bands;
+  float e = 0;
+  if (const auto k = lights.sky_of_state[state]; k != LightSources::none)
+    e += static_cast<float>(scene.states[state].sky->irradiance[band]) * ground.sky[k][side];
+  if (const auto k = lights.sun_of_state[state]; k != LightSources::none)
+    e += static_cast<float>(scene.states[state].sun->irradiance[band]) * ground.lit[k][side];
+  return e;
+}
+
+void SceneLight::reflect_from_ground(std::vector<float>& e) const {
+  if (!scene.ground) return;
+  const auto& optics = scene.ground->optics;
+  for (std::size_t f = 0; f + 1 < ground.seen.size(); f += 2)
+    for (std::size_t c = 0; c < columns; ++c) {
+      const float front = e[f * columns + c], back = e[(f + 1) * columns + c];
+      const std::size_t band = c % bands;
+      e[f * columns + c] = optics.reflectance_front[band] * front + optics.transmittance[band] * back;
+      e[(f + 1) * columns + c] = optics.reflectance_back[band] * back + optics.transmittance[band] * front;
+    }
+}
+
+std::vector<double> SceneLight::product(const Light& a, const Light& b) const {
+  std::vector<double> out(columns, 0.0);
+  for (std::size_t m = 0; m < members.maps.size(); ++m) {
+    const auto& op = members.coarse_of(m);
+    const double unit = members.maps[m].scale * members.maps[m].scale * op.line_area / op.directions();
+    const float *x = a.fields.data() + field_start[m] * columns, *y = b.fields.data() + field_start[m] * columns;
+    for (std::size_t f = 0; f < op.fields(); ++f)
+      for (std::size_t c = 0; c < columns; ++c) out[c] += unit * op.field_lines[f] * x[f * columns + c] * y[f * columns + c];
+  }
+  for (std::size_t side = 0; side < ground.seen.size(); ++side)
+    for (std::size_t c = 0; c < columns; ++c)
+      out[c] += double{ground.area[side / 2]} * a.ground[side * columns + c] * b.ground[side * columns + c];
+  return out;
+}
+
+Light SceneLight::no_light() const {
+  return {std::vector<float>(field_start.back() * columns, 0.0f), std::vector<float>(ground.seen.size() * columns, 0.0f)};
+}
+
+std::vector<std::uint32_t> SceneLight::all_members() const {
+  std::vector<std::uint32_t> out(members.maps.size());
+  for (std::uint32_t m = 0; m < out.size(); ++m) out[m] = m;
+  return out;
+}
+
+}  // namespace sunfleck

@@ -1,0 +1,63 @@
+// What all copies of a scene receive and see: the part of a solve that is done once.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include <sunfleck/core/progress.hpp>
+#include <sunfleck/light/light_sources.hpp>
+#include <sunfleck/scene/solution.hpp>
+
+#include "instantiation/ground_light.hpp"
+#include "instantiation/members.hpp"
+#include "instantiation/surroundings.hpp"
+
+namespace sunfleck {
+
+/// Fields of all members, [member][field][column], and the radiosity of the ground, [side][column].
+struct Light {
+  std::vector<float> fields, ground;
+};
+
+/// A scene, its members, the sun on their cells, and where their rays end. Columns: state * bands + band.
+struct SceneLight {
+  SceneLight(const Scene& scene, const PlacedScene& placed, const InstantiationSettings& settings, Progress& progress);
+
+  /// The sun's projection through all copies.
+  void project_sun(SolveReport& report);
+  /// Rays from all copies and from the ground.
+  void look_around(SolveReport& report);
+
+  /// Rays through the points of an operator of member `m`.
+  void look_from(std::uint32_t m, const LineOperator& op, RayEnd* out) const;
+  /// Radiance times pi of the sky towards d, for a column [W m^-2].
+  float sky_radiance(const Vec3& d, std::size_t column) const;
+  /// Per element side: cosine towards the sun times the lit fraction, area mean over its cells.
+  void sun_on_elements(std::uint32_t m, std::size_t sun, std::vector<float>& out) const;
+  /// Irradiance of the ground, [side][column]: direct light and what members and other ground send.
+  std::vector<float> ground_irradiance(const Light* light, bool direct) const;
+  float ground_direct(std::size_t side, std::size_t column) const;
+  /// Radiosity from irradiance, in place.
+  void reflect_from_ground(std::vector<float>& e) const;
+  /// Scalar product of two lights per column, weighted by the power that leaves through the fields and from the ground.
+  std::vector<double> product(const Light& a, const Light& b) const;
+  Light no_light() const;
+  std::vector<std::uint32_t> all_members() const;
+
+  const Scene& scene;
+  const PlacedScene& placed;
+  const InstantiationDensity density;
+  const std::uint64_t seed;
+  Progress& progress;
+  const std::size_t states, bands, columns;
+  const LightSources lights;
+  Members members;
+  std::vector<LitCells> lit;  ///< per distinct sun
+  std::unique_ptr<Surroundings> around;
+  std::vector<std::uint64_t> field_start, end_start;  ///< [members + 1]
+  std::vector<RayEnd> ends;                           ///< of the coarse operators' points
+  GroundView ground;
+};
+
+}  // namespace sunfleck
