@@ -59,7 +59,8 @@ PictureCut cut_plane(const std::string& text) {
 std::size_t rgb_band(const Result& result, const std::string& name) {
   const auto& bands = result.bands();
   const auto at = std::find(bands.begin(), bands.end(), name);
-  if (at == bands.end()) throw UsageError(fmt::format("--rgb: found '{}'; expected three of the bands in {}: {}", name, result.file(), joined(bands)));
+  if (at == bands.end())
+    throw UsageError(fmt::format("--rgb: found '{}'; expected three of the bands in {}: {}", name, result.file(), joined(bands)));
   return static_cast<std::size_t>(at - bands.begin());
 }
 

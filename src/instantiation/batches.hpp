@@ -55,8 +55,8 @@ std::vector<LaneOptics<width>> optics_of(const SceneLight& s, const Batch& b) {
 /// What comes in through each field: means over the rays of each pixel. `light`: what members and the ground send (null = nothing);
 /// `sky`: the sky's part is added.
 template <int width>
-void incoming(const SceneLight& s, const Batch& b, const LineOperator& op, const std::vector<const RayEnd*>& ends, const Light* light, bool sky,
-              LaneField<width>& field) {
+void incoming(const SceneLight& s, const Batch& b, const LineOperator& op, const std::vector<const RayEnd*>& ends, const Light* light,
+              bool sky, LaneField<width>& field) {
   field.assign(op.fields(), Lanes<width>{});
   const std::size_t pixels = std::size_t{op.pixels()} * op.pixels();
   std::vector<float> radiance(b.columns, 0.0f);

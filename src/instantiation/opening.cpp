@@ -48,8 +48,8 @@ class Opening {
         if (fine_of != batches[begin].original) {
           fine.reset();
           fine_of = batches[begin].original;
-          fine = std::make_unique<LineOperator>(s_.members.originals[fine_of].elements, s_.density.fine,
-                                                mix(s_.seed, fine_stream, fine_of), s_.progress);
+          fine = std::make_unique<LineOperator>(s_.members.originals[fine_of].elements, s_.density.fine, mix(s_.seed, fine_stream, fine_of),
+                                                s_.progress);
           if (fine->bytes() > fine_bytes_) fine_bytes_ = fine->bytes();
         }
         std::vector<std::vector<Balance>> partial(end - begin);

@@ -32,7 +32,7 @@ SceneLight::SceneLight(const Scene& a_scene, const PlacedScene& a_placed, const 
       members(make_members(a_scene, a_placed, density.coarse, density.elements_per_organ, seed, a_progress)) {}
 
 void SceneLight::project_sun(SolveReport& report) {
-      double pitch = 0;
+  double pitch = 0;
   for (std::size_t m = 0; m < members.maps.size(); ++m) {
     const double organ = members.original_of(m).elements.organ_area * members.maps[m].scale * members.maps[m].scale;
     const double own = std::sqrt(0.5 * organ / (density.sun_lines_per_organ / density.sun_samples));
@@ -41,7 +41,7 @@ void SceneLight::project_sun(SolveReport& report) {
   std::uint64_t fragments = 0;
   for (const auto* sun : lights.suns) {
     lit.push_back(lit_cells(members.copies, sun_directions(*sun, density.sun_samples, mix(seed, sun_stream)), pitch,
-                             mix(seed, sun_stream, 1), progress));
+                            mix(seed, sun_stream, 1), progress));
     fragments += lit.back().fragments;
     report.memory.emplace_back("sun", bytes_of(lit.back().lit));
   }
@@ -65,8 +65,8 @@ void SceneLight::look_around(SolveReport& report) {
   });
   progress.check();
   ground = view_from_ground(scene, members.copies.ground, *around, lights,
-                             std::max(8u, density.ground_rays / (members.ground_split * members.ground_split)), density.sun_samples,
-                             mix(seed, ground_stream), progress);
+                            std::max(8u, density.ground_rays / (members.ground_split * members.ground_split)), density.sun_samples,
+                            mix(seed, ground_stream), progress);
   report.counts.emplace_back("rays", ends.size() + ground.ends.size());
   report.memory.emplace_back("rays", around->bytes() + bytes_of(ends) + ground.bytes());
 }

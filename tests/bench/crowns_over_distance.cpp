@@ -107,8 +107,8 @@ void plot(const std::vector<Row>& rows, const std::string& file) {
   fmt::print(f, "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 640 350\" font-family=\"sans-serif\" font-size=\"13\">\n");
   fmt::print(f, "<rect width=\"640\" height=\"350\" fill=\"white\"/>\n");
   for (int e = 0; e <= 5; ++e)
-    fmt::print(f, "<path d=\"M60 {0:.1f}H590\" stroke=\"#ddd\"/><text x=\"52\" y=\"{1:.1f}\" text-anchor=\"end\">{2:.1f}</text>\n", y(0.5 * e),
-               y(0.5 * e) + 4, 0.5 * e);
+    fmt::print(f, "<path d=\"M60 {0:.1f}H590\" stroke=\"#ddd\"/><text x=\"52\" y=\"{1:.1f}\" text-anchor=\"end\">{2:.1f}</text>\n",
+               y(0.5 * e), y(0.5 * e) + 4, 0.5 * e);
   for (int d = 0; d <= 6; ++d) fmt::print(f, "<text x=\"{:.1f}\" y=\"318\" text-anchor=\"middle\">{}</text>\n", x(d), d);
   fmt::print(f, "<text x=\"320\" y=\"340\" text-anchor=\"middle\">distance of the centres [radii]</text>\n");
   fmt::print(f, "<text x=\"16\" y=\"170\" transform=\"rotate(-90 16 170)\" text-anchor=\"middle\">error per leaf [%]</text>\n");
@@ -116,11 +116,14 @@ void plot(const std::vector<Row>& rows, const std::string& file) {
   const char* name[2] = {"PAR (aim 1.5)", "NIR (aim 2.2)"};
   const double aim[2] = {1.5, 2.2};
   for (int b = 0; b < 2; ++b) {
-    fmt::print(f, "<path d=\"M60 {0:.1f}H590\" stroke=\"{1}\" stroke-dasharray=\"5 4\"/>\n<polyline fill=\"none\" stroke=\"{1}\" stroke-width=\"2\" points=\"",
+    fmt::print(f,
+               "<path d=\"M60 {0:.1f}H590\" stroke=\"{1}\" stroke-dasharray=\"5 4\"/>\n<polyline fill=\"none\" stroke=\"{1}\" "
+               "stroke-width=\"2\" points=\"",
                y(aim[b]), colour[b]);
     for (const auto& r : rows) fmt::print(f, "{:.1f},{:.1f} ", x(r.distance), y(r.error[b]));
     fmt::print(f, "\"/>\n");
-    for (const auto& r : rows) fmt::print(f, "<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3\" fill=\"{}\"/>\n", x(r.distance), y(r.error[b]), colour[b]);
+    for (const auto& r : rows)
+      fmt::print(f, "<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3\" fill=\"{}\"/>\n", x(r.distance), y(r.error[b]), colour[b]);
     fmt::print(f, "<text x=\"585\" y=\"{:.1f}\" text-anchor=\"end\" fill=\"{}\">{}</text>\n", y(aim[b]) - 5, colour[b], name[b]);
   }
   fmt::print(f, "</svg>\n");

@@ -44,7 +44,8 @@ TEST_CASE("render refuses what cannot be and writes nothing", "[cli][view]") {
       {{"--width", "0"}, "--width: found '0'"},
       {{"--eye", "1", "1", "1", "--target", "1", "1", "1"}, "camera: found the same point as eye and target"},
       {{"--elevation", "nan"}, "--elevation: found 'nan'"},
-      {{"--views", "front,tpo"}, "--views: found 'tpo'; expected some of camera, front, back, left, right, top, bottom (did you mean 'top'?)"},
+      {{"--views", "front,tpo"},
+       "--views: found 'tpo'; expected some of camera, front, back, left, right, top, bottom (did you mean 'top'?)"},
       {{"--cut", "q=1"}, "--cut: found 'q=1'; expected x, y or z, '=' and a number in metres, or six numbers x,y,z,nx,ny,nz"},
       {{"--cut", "x=one"}, "--cut: found 'x=one'"},
       {{"--cut", "0,0,0,0,0,0"}, "--cut: found '0,0,0,0,0,0'"},
@@ -91,7 +92,8 @@ TEST_CASE("render draws, and keeps the old picture on a full disk", "[cli][view]
   const std::string layers = folder.file("p.exr", "old");
   CHECK(run_sunfleck({"render", result, "-o", layers, "--width", "64", "--height", "48"}, fate).exit_code == 1);
   CHECK(text_of(layers) == "old");
-  CHECK(run_sunfleck({"render", result, "-o", layers, "--width", "64", "--height", "48", "--views", "camera,top", "--cut", "y=1"}).exit_code == 0);
+  CHECK(run_sunfleck({"render", result, "-o", layers, "--width", "64", "--height", "48", "--views", "camera,top", "--cut", "y=1"})
+            .exit_code == 0);
   CHECK(text_of(layers).substr(0, 4) == "v/1\x01");
   CHECK(folder.listing() == std::vector<std::string>{"p.exr", "p.png", "r.h5"});
 }

@@ -19,7 +19,8 @@ TEST_CASE("every verb explains itself", "[cli]") {
   const ProgramRun program = run_sunfleck({"--help"});
   CHECK(program.exit_code == 0);
   CHECK(program.err.empty());
-  for (const std::string verb : {"solve", "plan", "compare", "export", "import", "render", "generate", "view", "info", "originals", "policy"}) {
+  for (const std::string verb :
+       {"solve", "plan", "compare", "export", "import", "render", "generate", "view", "info", "originals", "policy"}) {
     INFO(verb);
     CHECK(contains(program.out, "\n  " + verb + " "));
     const ProgramRun run = run_sunfleck({verb, "--help"});

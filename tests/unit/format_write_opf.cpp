@@ -55,7 +55,8 @@ TEST_CASE("A plant written as OPF is read back with its facets, structures and n
   const auto before = facets(plant), after = facets(back);
   REQUIRE(after.size() == before.size());
   for (std::size_t f = 0; f < before.size(); ++f)
-    for (std::size_t c = 0; c < 3; ++c) CHECK(glm::length(after[f][c] - before[f][c]) < 4e-15);  // roundings: metres to centimetres and back
+    for (std::size_t c = 0; c < 3; ++c)
+      CHECK(glm::length(after[f][c] - before[f][c]) < 4e-15);  // roundings: metres to centimetres and back
   CHECK(std::get<double>(*back.attribute(2, "absorbed_W_PAR")) == 2.25);
   CHECK(std::get<double>(*back.attribute(3, "area_m2")) == 4.0);
   CHECK_FALSE(back.attribute(2, "area_m2"));
