@@ -284,15 +284,13 @@ class HalfBuilder {
   std::vector<std::uint32_t> by_node_, other_;
 };
 
-/// Small scenes get a finer grid, so that a direction is not told by a few lines alone.
-constexpr double fewest_hits = 1000.0;  ///< of plants, per direction
-
 double line_pitch(const Elements& e, const RadiosityDensity& density) {
   double area = 0;
   for (std::size_t t = 0; t < e.surface.focus_count; ++t)
     if (e.surface.split[t] > 0)
       area += static_cast<double>(e.surface.cell_area[t]) * (e.surface.first_cell[t + 1] - e.surface.first_cell[t]);
-  return std::sqrt(0.5 * std::min(e.element_area / density.lines_per_element, area / fewest_hits));
+  const double fewest = density.fewest_hits / density.directions;
+  return std::sqrt(0.5 * std::min(e.element_area / density.lines_per_element, area / std::max(1.0, fewest)));
 }
 
 std::vector<LineSky> skies_along(const std::vector<Projection>& projection, const std::vector<const Sky*>& skies, double mean_line_area) {

@@ -14,7 +14,8 @@ RadiosityDensity density_of(Quality quality) {
            .sun_samples = 2,
            .sun_lines_per_organ = 800.0,
            .link_error = 0.8,
-           .tolerance = 1e-5};
+           .tolerance = 1e-5,
+           .fewest_hits = 48e3};
       break;
     case Quality::standard:
       d = {.directions = 160,
@@ -25,7 +26,8 @@ RadiosityDensity density_of(Quality quality) {
            .sun_samples = 4,
            .sun_lines_per_organ = 3000.0,
            .link_error = 0.5,
-           .tolerance = 2e-6};
+           .tolerance = 2e-6,
+           .fewest_hits = 160e3};
       break;
     case Quality::fine:
       d = {.directions = 224,
@@ -36,7 +38,8 @@ RadiosityDensity density_of(Quality quality) {
            .sun_samples = 8,
            .sun_lines_per_organ = 10000.0,
            .link_error = 0.25,
-           .tolerance = 1e-6};
+           .tolerance = 1e-6,
+           .fewest_hits = 224e3};
       break;
   }
   return d;

@@ -54,6 +54,7 @@ Counts count_lines(const std::vector<Mesh>& surfaces, std::uint32_t directions, 
   settings.density.directions = directions;
   settings.density.elements_per_organ = 1;
   settings.density.lines_per_element = lines_per_surface;
+  settings.density.fewest_hits = 0;
   const auto elements = make_elements(scene, facets, settings);
   const auto links = line_links(elements, nullptr, {}, {}, settings, silent());
   std::vector<std::size_t> organ_side(links.sides());

@@ -24,6 +24,7 @@ struct RadiosityDensity {
   double sun_lines_per_organ;    ///< over all sun samples together [-]
   double link_error;             ///< threshold of the refinement oracle, relative to the mean irradiance [-]
   double tolerance;              ///< relative true residual of the iteration [-]
+  double fewest_hits = 0;        ///< of global lines on plants, over all directions: small scenes get a finer grid [-]
 };
 RadiosityDensity density_of(Quality quality);
 
