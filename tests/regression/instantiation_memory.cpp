@@ -18,7 +18,6 @@ Scene grove(int n) {
   for (int i = 0; i < n * n; ++i) {
     Stance s;
     s.position = {1.6 * (i % n), 1.6 * (i / n), 0};
-    s.turn_deg = 50.0 * i;
     scene.plants[0].placements.push_back(placed(s));
   }
   sky(scene, SkyModel::standard_overcast, 100);
