@@ -113,12 +113,15 @@ LightSource stored_light(const Result& result, const DrawnScene& scene, std::siz
     throw InputError(location(result.file(), 0, "facets/irradiance"), "nothing",
                      "irradiance of facets or organs; [output] of the scene left both out");
   // The mean of an organ says nothing about where the sun falls on it: no sharp beam.
-  light.irradiance = [b, facets = lookup(scene), organs = result.state_rows<float>("organs/irradiance", state, 0, result.organ_count())](
-                         std::size_t first, std::size_t count) {
+  // Organs are numbered as their facets come, so a range of facets needs a range of organs: there may be more of those than memory holds.
+  light.irradiance = [&result, b, state, facets = lookup(scene)](std::size_t first, std::size_t count) {
     const auto organ = facets.organ(first, count);
     std::vector<float> out(2 * b * count);
+    if (count == 0) return out;
+    const auto [low, high] = std::minmax_element(organ.begin(), organ.end());
+    const auto rows = result.state_rows<float>("organs/irradiance", state, *low, std::size_t{*high} - *low + 1);
     for (std::size_t i = 0; i < count; ++i)
-      std::copy_n(organs.begin() + static_cast<std::ptrdiff_t>(2 * b * organ[i]), 2 * b,
+      std::copy_n(rows.begin() + static_cast<std::ptrdiff_t>(2 * b * (organ[i] - *low)), 2 * b,
                   out.begin() + static_cast<std::ptrdiff_t>(2 * b * i));
     return out;
   };

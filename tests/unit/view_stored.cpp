@@ -55,6 +55,12 @@ TEST_CASE("a file that keeps organs only still tells which facet belongs to whic
   REQUIRE(map.values[2] == Approx(power[organ * b] / area[organ]).epsilon(1e-6));  // one division in float
   const FacetLight light = stored_light(result, read, 0);
   REQUIRE(light.irradiance.size() == 2 * b * read.size());
+  const DrawnScene drawn(result);
+  const LightSource source = stored_light(result, drawn, 0);
+  REQUIRE(source.irradiance(0, read.size()) == light.irradiance);
+  REQUIRE(source.irradiance(3, 4) == std::vector<float>(light.irradiance.begin() + static_cast<std::ptrdiff_t>(6 * b),
+                                                        light.irradiance.begin() + static_cast<std::ptrdiff_t>(14 * b)));
+  REQUIRE_FALSE(source.sunlit);
   REQUIRE(light.sunlit.empty());
 }
 
