@@ -2,8 +2,10 @@
 
 # -Wno-restrict: g++ 12 sees overlaps in "text" + std::string that are not there (GCC bug 105651).
 function(sunfleck_options target)
-  target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wno-restrict -Werror
-                         -fno-math-errno -fno-trapping-math)  # lets loops with rounding be vectorised; changes no result
+  if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
+    target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wno-restrict -Werror)
+  endif()
+  target_compile_options(${target} PRIVATE -fno-math-errno -fno-trapping-math)  # lets loops with rounding be vectorised; changes no result
   if(SUNFLECK_ISA)
     target_compile_options(${target} PRIVATE -march=${SUNFLECK_ISA})
   endif()
@@ -11,6 +13,10 @@ function(sunfleck_options target)
     target_compile_options(${target} PRIVATE -ffp-contract=fast)
   else()
     target_compile_options(${target} PRIVATE -ffp-contract=off)
+  endif()
+  if(SUNFLECK_FUZZ)
+    target_compile_options(${target} PUBLIC -fsanitize=fuzzer-no-link,address,undefined -fno-omit-frame-pointer -fno-sanitize-recover=all)
+    target_link_options(${target} PUBLIC -fsanitize=address,undefined)
   endif()
   if(SUNFLECK_SANITIZE)
     target_compile_options(${target} PUBLIC -fsanitize=address,undefined -fno-omit-frame-pointer -fno-sanitize-recover=all)

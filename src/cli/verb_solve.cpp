@@ -1,5 +1,6 @@
 #include <sunfleck/cli/verbs.hpp>
 
+#include <algorithm>
 #include <optional>
 #include <string>
 
@@ -87,6 +88,20 @@ void say_timings(const SolveReport& report, std::uint64_t facets, double seconds
                             count_text(static_cast<double>(facets) / seconds), bytes_text(static_cast<double>(peak_resident_bytes()))));
 }
 
+void say_not_converged(const Scene& scene, const SolveReport& report, Progress& progress) {
+  const auto worst = std::max_element(report.spectral_radius.begin(), report.spectral_radius.end());
+  const std::string why = worst == report.spectral_radius.end()
+                              ? ""
+                              : fmt::format("; in {} the largest part of scattered light that one more scattering keeps is {:.7f}",
+                                            scene.bands[static_cast<std::size_t>(worst - report.spectral_radius.begin())], *worst);
+  progress.line(
+      fmt::format("sunfleck: did not converge: the residual reached is {:.2e} of the direct light after {}{}. The result is written "
+                  "with status 'not_converged'. Where light is trapped between surfaces of an albedo near 1, lower that albedo, or "
+                  "open the space",
+                  report.convergence.empty() ? 0.0 : report.convergence.back().residual,
+                  counted(report.convergence.size(), "iteration", "iterations"), why));
+}
+
 }  // namespace
 
 int verb_solve(const SolveOptions& options, Progress& progress) {
@@ -140,8 +155,7 @@ int verb_solve(const SolveOptions& options, Progress& progress) {
   say_timings(report, placed.facets, total.seconds(), progress);
   progress.line("wrote " + options.result);
   if (report.status == SolveStatus::converged) return 0;
-  progress.line(fmt::format("sunfleck: did not converge: the residual reached is {:.2e}; the result is written with status 'not_converged'",
-                            report.convergence.empty() ? 0.0 : report.convergence.back().residual));
+  say_not_converged(scene, report, progress);
   return not_converged;
 }
 

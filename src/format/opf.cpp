@@ -93,6 +93,7 @@ class OpfReader {
 
   Plant read() {
     std::string text = read_whole(file_);
+    bytes_ = text.size();
     for (std::size_t at = text.find('\n'); at != std::string::npos; at = text.find('\n', at + 1)) line_ends_.push_back(at);
     pugi::xml_document document;
     const auto result = document.load_buffer_inplace(text.data(), text.size());
@@ -117,7 +118,7 @@ class OpfReader {
  private:
   long line_at(std::ptrdiff_t offset) const {
     if (offset < 0) return 0;
-    return 1 + std::lower_bound(line_ends_.begin(), line_ends_.end(), static_cast<std::size_t>(offset)) - line_ends_.begin();
+    return 1 + (std::lower_bound(line_ends_.begin(), line_ends_.end(), static_cast<std::size_t>(offset)) - line_ends_.begin());
   }
 
   [[noreturn]] void fail(pugi::xml_node node, const std::string& found, const std::string& expected) const {
@@ -342,6 +343,11 @@ class OpfReader {
   std::uint32_t tapered(std::uint32_t mesh, double down, double up) {
     const auto [at, fresh] = tapered_.try_emplace({mesh, down, up}, static_cast<std::uint32_t>(plant_.meshes.size()));
     if (!fresh) return at->second;
+    // a few bytes of a file ask for a whole copy here; a real organ has as many bytes as its mesh has points, about
+    tapered_points_ += plant_.meshes[mesh].vertices.size() + plant_.meshes[mesh].triangles.size();
+    if (const std::size_t most = 1'000'000 + 16 * bytes_; tapered_points_ > most)
+      throw InputError(location(file_), fmt::format("tapered copies of meshes with more than {} points and faces", most),
+                       "fewer in a file of this size: organs of the same dUp and dDwn share one copy");
     Mesh copy = plant_.meshes[mesh];
     Box box;
     for (const auto& p : copy.vertices) box.add(p);
@@ -381,6 +387,7 @@ class OpfReader {
   std::unordered_map<std::int64_t, std::string> material_names_;
   std::unordered_map<std::string, Kind> kinds_;
   std::map<std::tuple<std::uint32_t, double, double>, std::uint32_t> tapered_;
+  std::size_t bytes_ = 0, tapered_points_ = 0;
 };
 
 }  // namespace

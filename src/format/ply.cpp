@@ -253,12 +253,12 @@ class PlyReader {
     const std::uint64_t left = bytes_.size() - (encoding_ == Encoding::ascii ? lines_.offset() : at_);
     const std::uint64_t least = element.least_bytes(encoding_);
     start_ = at_;
-    if (least == 0) return;
-    if (element.count > (left + 1) / least)  // + 1: the last line may have no end
+    if (least > 0 && element.count > (left + 1) / least)  // + 1: the last line may have no end
       fail(fmt::format("{} times element {} in the header", element.count, in_quotes(element.name)),
            fmt::format("no more than fit into the {} bytes that follow", left));
     if (element.name == "vertex") return read_vertices(element);
     if (element.name == "face") return read_faces(element);
+    if (least == 0) return;
     for (std::uint64_t i = 0; i < element.count; ++i) next_values(element, -1);
   }
 

@@ -33,7 +33,9 @@ std::shared_ptr<const Plant> read_shared(const TomlValue& table, const Scene& sc
   if (is_species && unit) unit->fail("`unit` beside a species", "none: species grow in metres");
   if (!is_species && (age || seed))
     (age ? age : seed)->fail(fmt::format("`{}` beside a file that is no species .toml", age ? "age" : "seed"), "it with species only");
-  PlantKey key{std::filesystem::weakly_canonical(file).string(), read_unit(table), {}, {}};
+  std::error_code circle;  // of links: the reader says so
+  const auto canonical = std::filesystem::weakly_canonical(file, circle);
+  PlantKey key{circle ? file : canonical.string(), read_unit(table), {}, {}};
   if (age) std::get<2>(key) = age->positive();
   if (seed) std::get<3>(key) = seed->integer(0, std::numeric_limits<std::int64_t>::max());
   auto& plant = cache[key];

@@ -21,6 +21,9 @@ void check_readable(const std::string& file) {
   const auto status = std::filesystem::status(file, error);
   if (!std::filesystem::exists(status)) throw InputError(file, "no such file", "an existing file");
   if (std::filesystem::is_directory(status)) throw InputError(file, "a folder", "a file");
+  // a pipe ends, a device such as /dev/zero need not
+  if (!std::filesystem::is_regular_file(status) && !std::filesystem::is_fifo(status))
+    throw InputError(file, "a device or socket", "a file");
 }
 
 std::string read_whole(const std::string& file) {

@@ -1,5 +1,6 @@
 #include "direct_light.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -22,8 +23,10 @@ double pitch_for(double organ_area, double lines) {
   return std::sqrt(0.5 * organ_area / lines);
 }
 
-/// Element means of a per-side quantity take the place of what no line has met.
+/// Element means of a per-side quantity take the place of what no line has met; where none met a whole element (a sliver, a speck), the
+/// mean of its organ.
 void fill_unsampled(const Elements& e, const std::vector<bool>& unsampled, std::vector<float>& value) {
+  std::vector<std::uint32_t> missed;
   for (std::size_t i = 0; i < e.size(); ++i) {
     double sum[2] = {0, 0};
     std::uint32_t known = 0;
@@ -33,11 +36,32 @@ void fill_unsampled(const Elements& e, const std::vector<bool>& unsampled, std::
         ++known;
         for (int side = 0; side < 2; ++side) sum[side] += value[2 * *c + side];
       }
+    if (known == 0 && first != last) missed.push_back(static_cast<std::uint32_t>(i));
     if (known == 0 || known == static_cast<std::uint32_t>(last - first)) continue;
     for (auto c = first; c != last; ++c)
       if (unsampled[*c])
         for (int side = 0; side < 2; ++side) value[2 * *c + side] = static_cast<float>(sum[side] / known);
   }
+  if (missed.empty()) return;
+  struct Mean {
+    double sum[2] = {0, 0};
+    std::uint64_t known = 0;
+  };
+  const auto organ_of = [&](std::size_t cell) { return e.organ_of_row[e.row_of_cell[cell]]; };
+  std::vector<Mean> organs(*std::max_element(e.organ_of_row.begin(), e.organ_of_row.end()) + std::size_t{1});
+  for (std::size_t c = 0; c < unsampled.size(); ++c) {
+    if (unsampled[c]) continue;
+    auto& mean = organs[organ_of(c)];
+    ++mean.known;
+    for (int side = 0; side < 2; ++side) mean.sum[side] += value[2 * c + side];
+  }
+  for (const auto i : missed)
+    for (std::uint32_t k = e.first_cell[i]; k < e.first_cell[i + 1]; ++k) {
+      const auto c = e.cells[k];
+      const auto& mean = organs[organ_of(c)];
+      if (mean.known > 0)
+        for (int side = 0; side < 2; ++side) value[2 * c + side] = static_cast<float>(mean.sum[side] / static_cast<double>(mean.known));
+    }
 }
 
 /// Lines conserve light: each ends at the sun or the sky once. Ratios of small counts, and cells that no line met, do not: the values of

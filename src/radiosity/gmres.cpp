@@ -12,6 +12,7 @@ namespace {
 
 constexpr std::size_t block_sides = 4096;
 constexpr std::size_t basis_bytes = std::size_t{256} << 20;  ///< a cycle grows until its basis fills this
+constexpr double most_error = 0.01;                          ///< of a solution, as residual and spectral radius tell
 constexpr int shortest_cycle = 8, longest_cycle = 40;
 
 /// Weighted dot products of two fields, one per column. Blocks are summed in order.
@@ -62,7 +63,8 @@ std::vector<double> norms(const Field& v, const std::vector<float>& weight, std:
 }
 
 GmresResult gmres(const std::function<void(const Field& x, Field& kx)>& apply, const Field& b, const std::vector<float>& weight,
-                  const std::vector<double>& scale, double tolerance, int most_iterations, Field& x, Progress& progress) {
+                  const std::vector<double>& scale, double tolerance, int most_iterations, Field& x, Progress& progress,
+                  double most_radius) {
   GmresResult result;
   const std::size_t columns = scale.size();
   const auto norm = [&](const Field& v) { return norms(v, weight, columns); };
@@ -75,6 +77,13 @@ GmresResult gmres(const std::function<void(const Field& x, Field& kx)>& apply, c
   x = b;  // exact where nothing is scattered
   Field r(b.size()), kx(b.size());
   result.spectral_radius.assign(columns, 0.0);
+  std::vector<double> target(columns);
+  for (std::size_t c = 0; c < columns; ++c) target[c] = tolerance * scale[c];
+  const auto met = [&](const std::vector<double>& length, double part) {
+    for (std::size_t c = 0; c < columns; ++c)
+      if (scale[c] > 0 && length[c] > part * target[c]) return false;
+    return true;
+  };
   double last_true = 0;
   const int longest = std::clamp(static_cast<int>(basis_bytes / (b.size() * sizeof(float) + 1)), shortest_cycle, longest_cycle);
   for (int iteration = 0;;) {
@@ -87,7 +96,20 @@ GmresResult gmres(const std::function<void(const Field& x, Field& kx)>& apply, c
     auto beta = norm(r);
     const double residual = worst(beta);
     result.residuals.push_back(residual);
-    if (residual <= tolerance) return result;
+    if (iteration > 1) {
+      const auto length = norm(x);
+      for (std::size_t c = 0; c < columns; ++c)
+        target[c] = std::min(target[c], most_error * std::max(0.0, 1.0 - result.spectral_radius[c]) * length[c]);
+    }
+    // before the first Krylov space nothing is known of the spectrum but its bound: light that comes in at a crack is small, and stays
+    std::vector<double> enough = target;
+    if (iteration == 1) {
+      const auto length = norm(x);
+      for (std::size_t c = 0; c < columns; ++c) enough[c] = std::min(target[c], most_error * std::max(0.0, 1.0 - most_radius) * length[c]);
+    }
+    bool done = true;
+    for (std::size_t c = 0; c < columns; ++c) done = done && (scale[c] <= 0 || beta[c] <= enough[c]);
+    if (done) return result;
     // single precision cannot go below its own rounding: stop when a whole cycle gains nothing
     if (iteration >= most_iterations || (last_true > 0 && residual > 0.9 * last_true)) {
       result.converged = false;
@@ -96,7 +118,7 @@ GmresResult gmres(const std::function<void(const Field& x, Field& kx)>& apply, c
     last_true = residual;
     // a column that is there stands still, so that it does not depend on the company it is solved in
     for (std::size_t c = 0; c < columns; ++c)
-      if (beta[c] <= tolerance * scale[c]) beta[c] = 0.0;
+      if (beta[c] <= enough[c]) beta[c] = 0.0;
     const int cycle = std::max(1, std::min(longest, most_iterations - iteration));
     std::vector<Field> v(1, r);
     std::vector<double> inverse(columns);
@@ -145,14 +167,14 @@ GmresResult gmres(const std::function<void(const Field& x, Field& kx)>& apply, c
         g[c].push_back(-sn * g[c][steps]);
         g[c][steps] *= cs;
         h[c].push_back(std::move(column));
-        const bool active = std::fabs(g[c][steps_of[c]]) > 0.5 * tolerance * scale[c];
+        const bool active = (steps == 0 && beta[c] > 0) || std::fabs(g[c][steps_of[c]]) > 0.5 * target[c];
         if (active && steps_of[c] == steps) steps_of[c] = steps + 1;
         estimate[c] = std::fabs(g[c][steps_of[c]]);
       }
       ++steps;
       result.residuals.push_back(worst(estimate));
       progress.check();
-      if (result.residuals.back() <= 0.5 * tolerance || steps == cycle) break;
+      if (met(estimate, 0.5) || steps == cycle) break;
       multiply(w, inverse, columns);
       v.push_back(std::move(w));
     }

@@ -8,6 +8,7 @@
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 
+#include <sunfleck/core/error.hpp>
 #include <sunfleck/core/memory.hpp>
 
 #include "direct_light.hpp"
@@ -33,6 +34,8 @@ class RadiositySolver {
         columns_(states_ * bands_) {}
 
   SolveReport run() {
+    if (facets_.zero_area_facets == facets_.size())
+      throw InputError(location(scene_.file), "no facet with an area", "at least one that light can meet");
     report_.method = settings_.method == RadiosityMethod::direct ? "direct"
                      : settings_.method == RadiosityMethod::flat ? "flat"
                                                                  : "clustering";
@@ -59,6 +62,14 @@ class RadiositySolver {
   }
 
  private:
+  double largest_albedo() const {
+    double albedo = 0;
+    for (const auto& m : facets_.materials)
+      for (std::size_t b = 0; b < bands_; ++b)
+        albedo = std::max(albedo, static_cast<double>(std::max(m.reflectance_front[b], m.reflectance_back[b])) + m.transmittance[b]);
+    return albedo;
+  }
+
   void timed(const char* phase, const Stopwatch& watch) { add_seconds(report_.timings, phase, watch.seconds()); }
 
   /// Irradiance of the sky, and of the sun, on a side of a cell of row t, for a state and band [W m^-2].
@@ -280,7 +291,8 @@ class RadiositySolver {
       half_step(0, gathered, kx);
     };
     const double tolerance = settings_.tolerance > 0 ? settings_.tolerance : settings_.density.tolerance;
-    const auto result = gmres(apply, source_[0], weight, scale, tolerance, most_iterations, irradiance[0], progress_);
+    const auto result = gmres(apply, source_[0], weight, scale, tolerance, most_iterations, irradiance[0], progress_,
+                              largest_albedo() * largest_albedo());
     half_step(1, irradiance[0], gathered);
     for (std::size_t i = 0; i < values; ++i) source_[1][i] += gathered[i];
     irradiance[1] = std::move(source_[1]);

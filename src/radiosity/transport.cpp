@@ -16,12 +16,19 @@ bool anything_scatters(const FacetScene& facets) {
 
 Reflection::Reflection(const FacetScene& facets, std::vector<std::uint32_t> material_of_part, std::size_t states)
     : material_(std::move(material_of_part)), columns_(states * facets.bands) {
+  bool transmits = false;
   for (const auto& m : facets.materials)
     for (std::size_t c = 0; c < columns_; ++c) {
       front_.push_back(m.reflectance_front[c % facets.bands]);
       back_.push_back(m.reflectance_back[c % facets.bands]);
       through_.push_back(m.transmittance[c % facets.bands]);
+      transmits = transmits || through_.back() > 0.0f;
     }
+  if (!transmits) std::vector<float>().swap(through_);
+}
+
+std::size_t Reflection::bytes() const {
+  return bytes_of(material_) + bytes_of(front_) + bytes_of(back_) + bytes_of(through_);
 }
 
 void Reflection::apply(const float* irradiance, float* radiosity) const {
@@ -31,6 +38,13 @@ void Reflection::apply(const float* irradiance, float* radiosity) const {
       const std::size_t m = material_[i] * n;
       const float* e = irradiance + 2 * i * n;
       float* b = radiosity + 2 * i * n;
+      if (through_.empty()) {
+        for (std::size_t c = 0; c < n; ++c) {
+          b[c] = front_[m + c] * e[c];
+          b[n + c] = back_[m + c] * e[n + c];
+        }
+        continue;
+      }
       for (std::size_t c = 0; c < n; ++c) {
         const float front = e[c], back = e[n + c];
         b[c] = front_[m + c] * front + through_[m + c] * back;

@@ -24,11 +24,13 @@ class Reflection {
   /// B_f = rho_f E_f + tau E_b, B_b = rho_b E_b + tau E_f.
   void apply(const float* irradiance, float* radiosity) const;
   std::size_t columns() const { return columns_; }
+  bool transmits() const { return !through_.empty(); }
+  std::size_t bytes() const;
 
  private:
   std::vector<std::uint32_t> material_;  ///< [parts]
   std::size_t columns_;
-  std::vector<float> front_, back_, through_;  ///< [materials][columns]
+  std::vector<float> front_, back_, through_;  ///< [materials][columns]; through_ is empty where nothing transmits
 };
 
 /// Mean radiosity that each node sends and receives along each channel: [nodes][channels][columns].

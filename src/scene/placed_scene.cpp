@@ -84,7 +84,7 @@ class Placing {
       out_.ground_organ.assign(out_.ground.size(), 0);
       return;
     }
-    const auto [columns, rows] = ground.cells;
+    const auto columns = ground.cells[0], rows = ground.cells[1];  // Clang 14 does not capture structured bindings
     const double x0 = ground.centre[0] - 0.5 * ground.size[0], y0 = ground.centre[1] - 0.5 * ground.size[1];
     const auto at = [&](std::uint32_t i, std::uint32_t j) {
       return Vec3{x0 + ground.size[0] * i / columns, y0 + ground.size[1] * j / rows, ground.height};

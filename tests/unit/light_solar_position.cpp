@@ -32,6 +32,21 @@ TEST_CASE("solar position does not depend on the zone in which the time is writt
   CHECK(a.azimuth_deg == b.azimuth_deg);
 }
 
+TEST_CASE("solar position: leap days, polar night and midnight sun") {
+  // 29 February is the day between its neighbours: the declination rises by some .37 degrees a day
+  const auto noon = [](const char* day) { return solar_position(std::string(day) + "T12:00:00Z", 51.5, 0.0, 0.0, "sun").elevation_deg; };
+  const double before = noon("2024-02-28"), leap = noon("2024-02-29"), after = noon("2024-03-01");
+  CHECK(leap - before == Approx(0.375).margin(0.02));
+  CHECK(after - leap == Approx(0.375).margin(0.02));
+  CHECK_THROWS_AS(noon("2023-02-29"), InputError);
+  // Tromso: below the horizon all day at the winter solstice, above it all night at the summer solstice
+  for (int hour = 0; hour < 24; ++hour) {
+    const std::string time = (hour < 10 ? "T0" : "T") + std::to_string(hour) + ":00:00Z";
+    CHECK(solar_position("2026-12-21" + time, 69.65, 18.96, 0.0, "sun").elevation_deg < -2.0);
+    CHECK(solar_position("2026-06-21" + time, 69.65, 18.96, 0.0, "sun").elevation_deg > 2.0);
+  }
+}
+
 TEST_CASE("places that do not exist are refused") {
   CHECK_THROWS_WITH(solar_position("2026-06-21T07:00Z", 91.0, 0.0, 0.0, "s.toml:8: sun"),
                     "s.toml:8: sun: found latitude = 91.000000; expected degrees north within [-90, 90]");

@@ -1,0 +1,128 @@
+#include "fuzz/formats.hpp"
+
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <map>
+#include <stdexcept>
+
+#include <unistd.h>
+
+#include <sunfleck/core/error.hpp>
+#include <sunfleck/format/read_plant.hpp>
+#include <sunfleck/format/scene_toml.hpp>
+#include <sunfleck/format/species_toml.hpp>
+#include <sunfleck/result/compare.hpp>
+#include <sunfleck/result/result_reader.hpp>
+#include <sunfleck/scene/counts.hpp>
+
+#include "fuzz/h5_recipe.hpp"
+
+namespace sunfleck::fuzz {
+
+namespace {
+
+using Bytes = std::span<const std::uint8_t>;
+
+/// A folder in memory where there is one, for files that parsers want by name.
+class Folder {
+ public:
+  Folder() {
+    const std::filesystem::path memory = "/dev/shm";
+    path_ = (std::filesystem::is_directory(memory) ? memory : std::filesystem::temp_directory_path()) /
+            ("sunfleck_fuzz_" + std::to_string(::getpid()));
+    std::filesystem::create_directories(path_);
+    put("leaf.obj", "g Leaf\nusemtl green\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    put("positions.csv", "x,y\n0,0\n2,1\n");
+  }
+  ~Folder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  std::string put(const std::string& name, const std::string& content) const {
+    const auto file = path_ / name;
+    std::ofstream(file, std::ios::binary | std::ios::trunc) << content;
+    return file.string();
+  }
+  std::string put(const std::string& name, Bytes content) const {
+    const auto file = path_ / name;
+    std::ofstream(file, std::ios::binary | std::ios::trunc)
+        .write(reinterpret_cast<const char*>(content.data()), static_cast<std::streamsize>(content.size()));
+    return file.string();
+  }
+
+ private:
+  std::filesystem::path path_;
+};
+
+const Folder& folder() {
+  static const Folder only;
+  return only;
+}
+
+void read_all_of_result(const std::string& file) {
+  const Result r(file);
+  (void)r.organs(), r.materials(), r.balance(), r.profile(), r.convergence(), r.spectral_radius(), r.timings(), r.counts(), r.memory();
+  (void)r.certificate(), r.periodic(), r.geometry();
+  for (const char* name : {"facets/irradiance", "facets/absorbed", "facets/sunlit", "organs/irradiance", "organs/absorbed"})
+    if (r.has(name)) (void)r.all<float>(name);
+  if (r.facet_count() > 0) (void)r.facet_organs(0, r.facet_count());
+  (void)compare(r, r);
+}
+
+void read_plant_as(const char* name, Bytes bytes) {
+  const Plant plant = read_plant(folder().put(name, bytes), 0.01);
+  check_plant(plant);  // what a reader lets through is sound
+}
+
+const std::map<std::string, std::function<void(Bytes)>>& readers() {
+  static const std::map<std::string, std::function<void(Bytes)>> all{
+      {"can", [](Bytes b) { read_plant_as("plant.can", b); }},
+      {"csv",
+       [](Bytes b) {
+         folder().put("fuzzed.csv", b);
+         static const std::string scene = folder().put(
+             "with_csv.toml",
+             "bands = [\"PAR\"]\n[sky]\nmodel = \"uniform\"\nirradiance = { PAR = 1.0 }\n[optics.leaf]\nreflectance = { PAR = 0.1 }\n"
+             "[[plant]]\nname = \"leaf\"\nfile = \"leaf.obj\"\noptics = { \"*\" = \"leaf\" }\nplace = [ { file = \"fuzzed.csv\" } ]\n");
+         check_scene(read_scene(scene));
+       }},
+      {"obj", [](Bytes b) { read_plant_as("plant.obj", b); }},
+      {"opf", [](Bytes b) { read_plant_as("plant.opf", b); }},
+      {"plant_h5", [](Bytes b) { read_plant_as("plant.h5", changed_plant_file(b)); }},
+      {"ply", [](Bytes b) { read_plant_as("plant.ply", b); }},
+      {"result_h5", [](Bytes b) { read_all_of_result(folder().put("result.h5", changed_result_file(b))); }},
+      {"scene",
+       [](Bytes b) {
+         const Scene scene = read_scene(folder().put("scene.toml", b));
+         check_scene(scene);
+         (void)count(scene);
+       }},
+      {"species", [](Bytes b) { (void)read_species(folder().put("species.toml", b)); }},
+  };
+  return all;
+}
+
+}  // namespace
+
+const std::vector<std::string>& formats() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> all;
+    for (const auto& [name, reader] : readers()) all.push_back(name);
+    return all;
+  }();
+  return names;
+}
+
+bool feed(const std::string& format, Bytes bytes) {
+  const auto reader = readers().find(format);
+  if (reader == readers().end()) throw std::invalid_argument("no parser named " + format);
+  try {
+    reader->second(bytes);
+    return true;
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
+}  // namespace sunfleck::fuzz

@@ -1,0 +1,123 @@
+// What a scene does not have leaves out its memory and its work, by the program's own counts.
+#include <catch2/catch.hpp>
+
+#include <map>
+
+#include <sunfleck/radiosity/plan.hpp>
+
+#include "radiosity_runs.hpp"
+
+using namespace sunfleck;
+using namespace radiosity_runs;
+
+namespace {
+
+/// A canopy with all there is: sun, overcast sky, two bands, transmission, a period, ground.
+Scene full_scene() {
+  auto scene = scene_with({"PAR", "NIR"}, {{"leaf", {0.07f, 0.42f}, {0.12f, 0.46f}, {0.04f, 0.40f}}});
+  scene.periodic = PeriodicCell{0, 0, 1, 1};
+  scene.ground = flat_ground({1, 1}, {0.5, 0.5}, {6, 6}, {0.1, 0.2});
+  sky(scene, SkyModel::standard_overcast, 100);
+  point_sun(scene, {0.5, 0.1, 0.7}, 400);
+  add(scene, "canopy", leaves(120, 0.15, {1, 1, 0.8}, 4), 0);
+  return scene;
+}
+
+struct Counted {
+  std::map<std::string, std::uint64_t> work, bytes, planned_bytes;
+  std::uint64_t planned_sky = 0, planned_sun = 0, planned_lines = 0, planned_links = 0;
+  std::size_t applications = 0;
+  std::map<std::string, double> seconds;
+};
+
+Counted counted(const Scene& scene, RadiosityMethod method = RadiosityMethod::flat) {
+  Counted out;
+  const auto settings = settings_of(method, Quality::draft);
+  const auto run = solve(scene, settings);
+  out.work.insert(run.report.counts.begin(), run.report.counts.end());
+  out.bytes.insert(run.report.memory.begin(), run.report.memory.end());
+  out.applications = run.report.convergence.size();
+  out.seconds.insert(run.report.timings.begin(), run.report.timings.end());
+  const auto plan = plan_radiosity(scene, run.facets, settings, silent());
+  out.planned_bytes.insert(plan.memory.begin(), plan.memory.end());
+  out.planned_sky = plan.sky_fragments, out.planned_sun = plan.sun_fragments;
+  out.planned_lines = plan.line_fragments, out.planned_links = plan.links;
+  return out;
+}
+
+}  // namespace
+
+TEST_CASE("absent: sun and sky", "[absent]") {
+  auto no_sun = full_scene(), no_sky = full_scene();
+  no_sun.states[0].sun.reset();
+  no_sky.states[0].sky.reset();
+  const auto both = counted(full_scene()), sky_only = counted(no_sun), sun_only = counted(no_sky);
+  CHECK(both.work.at("direct_fragments") > sky_only.work.at("direct_fragments"));
+  CHECK(both.bytes.at("direct") > sky_only.bytes.at("direct"));
+  CHECK(both.bytes.at("direct") > sun_only.bytes.at("direct"));
+  // the sun's first reflection is kept per side
+  CHECK(sky_only.bytes.at("links") < both.bytes.at("links"));
+  CHECK(sky_only.work.at("links") == both.work.at("links"));
+  CHECK(sky_only.planned_sun == 0);
+  CHECK(sun_only.planned_sky == 0);
+  CHECK(sky_only.planned_sky == both.planned_sky);
+  CHECK(sun_only.planned_bytes.at("direct") < both.planned_bytes.at("direct"));
+}
+
+TEST_CASE("absent: scattering", "[absent]") {
+  auto black = full_scene();
+  black.optics = {uniform_optics("leaf", {0, 0}, {0, 0})};
+  black.ground->optics = uniform_optics("ground", {0, 0}, {0, 0});
+  const auto all = counted(full_scene()), direct = counted(full_scene(), RadiosityMethod::direct), dark = counted(black);
+  for (const auto* run : {&direct, &dark}) {
+    CHECK(run->bytes.count("links") == 0);
+    CHECK(run->bytes.count("fields") == 0);
+    CHECK(run->work.count("links") == 0);
+    CHECK(run->work.count("fragments") == 0);
+    CHECK(run->seconds.count("lines") == 0);
+    CHECK(run->planned_lines == 0);
+    CHECK(run->planned_links == 0);
+    CHECK(run->work.at("direct_fragments") == all.work.at("direct_fragments"));
+  }
+  CHECK(direct.applications == 0);
+  CHECK(dark.applications == 1);  // the statement that nothing is left to solve
+}
+
+TEST_CASE("absent: a second band, a second state", "[absent]") {
+  auto one = full_scene(), two_states = full_scene();
+  one.bands = {"PAR"};
+  one.band_units = {"W m^-2"};
+  one.optics = {{"leaf", {0.07f}, {0.12f}, {0.04f}}};
+  one.ground->optics = uniform_optics("ground", {0.1}, {0});
+  one.states[0].sun->irradiance = {400};
+  one.states[0].sky->irradiance = {100};
+  two_states.states.push_back(two_states.states[0]);
+  const auto a = counted(one), b = counted(full_scene()), c = counted(two_states);
+  // geometry is shared: elements, lines, links; direct light is kept per light source, not per band
+  for (const char* what : {"elements", "cells", "fragments", "links", "direct_fragments"}) {
+    CAPTURE(what);
+    CHECK(a.work.at(what) == b.work.at(what));
+    CHECK(c.work.at(what) == b.work.at(what));
+  }
+  CHECK(a.bytes.at("direct") == b.bytes.at("direct"));
+  CHECK(a.bytes.at("links") < b.bytes.at("links"));  // the sun's first reflection
+  CHECK(10 * a.planned_bytes.at("fields") < 6 * b.planned_bytes.at("fields"));
+  CHECK(10 * c.planned_bytes.at("fields") > 17 * b.planned_bytes.at("fields"));
+}
+
+TEST_CASE("absent: ground and period", "[absent]") {
+  auto bare = full_scene(), finite = full_scene();
+  bare.ground.reset();
+  finite.periodic.reset();
+  const auto all = counted(full_scene()), no_ground = counted(bare), no_period = counted(finite);
+  CHECK(no_ground.work.at("elements") == all.work.at("elements") - 72);  // 6 x 6 cells of two facets
+  for (const char* what : {"elements", "direct", "links"}) {
+    CAPTURE(what);
+    CHECK(no_ground.bytes.at(what) < all.bytes.at(what));
+  }
+  CHECK(no_ground.work.at("fragments") < all.work.at("fragments"));
+  // a period stores nothing: the same elements and cells; lines that leave at a side come in again and meet more
+  CHECK(no_period.bytes.at("elements") == all.bytes.at("elements"));
+  CHECK(no_period.bytes.at("direct") == all.bytes.at("direct"));
+  CHECK(no_period.work.at("links") < all.work.at("links"));
+}
