@@ -291,8 +291,8 @@ class RadiositySolver {
       half_step(0, gathered, kx);
     };
     const double tolerance = settings_.tolerance > 0 ? settings_.tolerance : settings_.density.tolerance;
-    const auto result = gmres(apply, source_[0], weight, scale, tolerance, most_iterations, irradiance[0], progress_,
-                              largest_albedo() * largest_albedo());
+    const auto result =
+        gmres(apply, source_[0], weight, scale, tolerance, most_iterations, irradiance[0], progress_, largest_albedo() * largest_albedo());
     half_step(1, irradiance[0], gathered);
     for (std::size_t i = 0; i < values; ++i) source_[1][i] += gathered[i];
     irradiance[1] = std::move(source_[1]);

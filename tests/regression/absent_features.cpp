@@ -47,7 +47,7 @@ Counted counted(const Scene& scene, RadiosityMethod method = RadiosityMethod::fl
 
 }  // namespace
 
-TEST_CASE("absent: sun and sky", "[absent]") {
+TEST_CASE("absent: sun and sky", "[.absent]") {
   auto no_sun = full_scene(), no_sky = full_scene();
   no_sun.states[0].sun.reset();
   no_sky.states[0].sky.reset();
@@ -64,7 +64,7 @@ TEST_CASE("absent: sun and sky", "[absent]") {
   CHECK(sun_only.planned_bytes.at("direct") < both.planned_bytes.at("direct"));
 }
 
-TEST_CASE("absent: scattering", "[absent]") {
+TEST_CASE("absent: scattering", "[.absent]") {
   auto black = full_scene();
   black.optics = {uniform_optics("leaf", {0, 0}, {0, 0})};
   black.ground->optics = uniform_optics("ground", {0, 0}, {0, 0});
@@ -83,7 +83,7 @@ TEST_CASE("absent: scattering", "[absent]") {
   CHECK(dark.applications == 1);  // the statement that nothing is left to solve
 }
 
-TEST_CASE("absent: a second band, a second state", "[absent]") {
+TEST_CASE("absent: a second band, a second state", "[.absent]") {
   auto one = full_scene(), two_states = full_scene();
   one.bands = {"PAR"};
   one.band_units = {"W m^-2"};
@@ -105,7 +105,7 @@ TEST_CASE("absent: a second band, a second state", "[absent]") {
   CHECK(10 * c.planned_bytes.at("fields") > 17 * b.planned_bytes.at("fields"));
 }
 
-TEST_CASE("absent: ground and period", "[absent]") {
+TEST_CASE("absent: ground and period", "[.absent]") {
   auto bare = full_scene(), finite = full_scene();
   bare.ground.reset();
   finite.periodic.reset();
