@@ -158,11 +158,12 @@ std::string ViewerServer::url() const {
 }
 
 void ViewerServer::run(Progress& progress) {
-  std::atomic<bool> loaded{false}, ended{false};
-  std::thread listening([this, &ended] {
+  std::atomic<bool> ended{false};
+  std::thread listening([&] {
     impl_->server.listen_after_bind();
     ended = true;
   });
+  std::atomic<bool> loaded{false};
   std::exception_ptr failure;
   std::thread loading([&] {
     try {
@@ -178,10 +179,9 @@ void ViewerServer::run(Progress& progress) {
     if (loaded && !told) progress.line(fmt::format("ready after {:.1f} s; Ctrl-C ends the viewer", watch.seconds())), told = true;
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
-  while (!ended) {  // a stop that comes before the thread listens is lost
-    impl_->server.stop();
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
-  }
+  // A stop that comes before the listening has begun would be lost, and one that comes twice meets an assertion of the library.
+  while (!impl_->server.is_running() && !ended) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  if (!ended) impl_->server.stop();
   listening.join();
   loading.join();
   if (failure) std::rethrow_exception(failure);

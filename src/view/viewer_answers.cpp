@@ -195,8 +195,14 @@ json legend(const ViewerScenes& scenes, const ViewerView& view) {
   json out{{"title", map.title}};
   if (view.shown.difference) out["title"][0] = "difference of " + map.title.front();
   if (!map.names.empty()) {
-    out["kind"] = "names", out["names"] = map.names;
-    for (std::size_t k = 0; k < map.names.size(); ++k) out["colours"].push_back(css(category_color(k)));
+    const auto& facets = scenes[view.result]->scene();
+    const std::size_t end = view.map_ground || facets.plant_facets == 0 ? facets.size() : facets.plant_facets;
+    std::vector<std::uint8_t> used(map.names.size(), 0);
+    for (std::size_t f = 0; f < end; ++f)
+      if (const auto row = static_cast<std::size_t>(map.values[f]); row < used.size()) used[row] = 1;
+    out["kind"] = "names", out["names"] = json::array(), out["colours"] = json::array();
+    for (std::size_t k = 0; k < used.size(); ++k)
+      if (used[k]) out["names"].push_back(map.names[k]), out["colours"].push_back(css(category_color(k)));
     return out;
   }
   out["kind"] = "numbers";

@@ -119,7 +119,15 @@ SelectionStatistics selection_statistics(const ViewerScenes& scenes, std::size_t
   out.deviation = names ? 0 : std::sqrt(squares / out.area);
   for (std::size_t l = 0; l < layers; ++l)
     out.layer_mean[l] = out.layer_area[l] > 0 ? out.layer_mean[l] / out.layer_area[l] : std::numeric_limits<double>::quiet_NaN();
-  if (names) out.layer_mean.clear(), out.low = out.high = 0;
+  if (!names) return out;
+  out.layer_mean.clear(), out.low = out.high = 0;
+  std::size_t used = 0;  // names that the selection does not have are left out
+  for (std::size_t k = 0; k < bins; ++k)
+    if (out.histogram_area[k] > 0) {
+      out.categories[used] = out.categories[k];
+      out.histogram_area[used++] = out.histogram_area[k];
+    }
+  out.categories.resize(used), out.histogram_area.resize(used);
   return out;
 }
 

@@ -207,7 +207,12 @@ TEST_CASE_METHOD(Fixture, "statistics of a selection add up to the file's organs
   const auto ground = static_cast<std::size_t>(std::find(organs.types.begin(), organs.types.end(), "ground") - organs.types.begin());
   CHECK(parsed(service, "/api/statistics", {{"select", fmt::format("type:{}", ground)}}).at("facets") ==
         facets.size() - facets.plant_facets);
-  CHECK(parsed(service, "/api/statistics", {{"quantity", "type"}}).at("categories").size() >= 2);
+  // Names that are not there are not listed.
+  CHECK(parsed(service, "/api/statistics", {{"quantity", "type"}}).at("categories").size() == 2);
+  CHECK(parsed(service, "/api/statistics", {{"quantity", "type"}, {"select", fmt::format("type:{}", leaf)}}).at("categories") ==
+        json({"Leaf"}));
+  CHECK(parsed(service, "/api/legend", {{"quantity", "type"}}).at("names").size() == 2);
+  CHECK(parsed(service, "/api/legend", {{"quantity", "type"}, {"map_ground", "1"}}).at("names").size() == 3);
 }
 
 TEST_CASE_METHOD(Fixture, "organs and plants are found by name", "[view][viewer]") {
