@@ -81,6 +81,7 @@ class Planner {
 
   Pilot pilot(const ClusterTree* tree, std::uint32_t directions) const {
     RadiositySettings settings = settings_;
+    settings.density.fewest_hits *= static_cast<double>(directions) / settings.density.directions;  // as many in each direction
     settings.density.directions = directions;
     settings.method = RadiosityMethod::flat;  // no search for enclosed parts
     const auto links = line_links(elements_, tree, {}, {}, settings, progress_);

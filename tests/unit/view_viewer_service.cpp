@@ -100,7 +100,7 @@ TEST_CASE_METHOD(Fixture, "what a request gets wrong is named, and nothing else 
       {"/api/frame", {{"log", "yes"}}, "log: found 'yes'; expected 0 or 1"},
       {"/api/frame",
        {{"map", "virids"}},
-       "--colormap: found 'virids'; expected one of viridis, magma, inferno, cividis, grey (did you mean 'viridis'?)"},
+       "--colormap: found 'virids'; expected one of viridis, magma, inferno, cividis, grey, difference (did you mean 'viridis'?)"},
       {"/api/frame", {{"band", "2"}}, "band: found '2'; expected a whole number from 0 to 1"},
       {"/api/frame", {{"band", "99999999999999999999"}}, "band: found '99999999999999999999'; expected a whole number from 0 to 1"},
       {"/api/frame", {{"result", "1"}}, "result: found '1'; expected a whole number from 0 to 0"},
