@@ -93,6 +93,7 @@ void export_obj(const Result& result, const std::string& file, const MeshChoice&
     text.clear();
   });
   out_library.write(material_text(materials, means));
+  out.flush();
   out_library.commit();
   out.commit();
 }

@@ -25,14 +25,14 @@ class ReplacedFile {
   /// Appends through a buffer.
   void write(const void* bytes, std::size_t count);
   void write(std::string_view text) { write(text.data(), text.size()); }
+  /// Writes the buffer out. Where several files belong together, each is written out before the first is committed.
+  void flush();
   /// Writes the buffer out, waits for the disk, and renames.
   void commit();
   /// Throws OutputError: "PATH: cannot be written: " and what an errno means.
   [[noreturn]] void fail(int error) const;
 
  private:
-  void flush();
-
   std::string path_, target_, temporary_, buffer_;
   int descriptor_ = -1;
   bool committed_ = false;
