@@ -32,7 +32,7 @@ const Case cases[] = {
 
 }  // namespace
 
-TEST_CASE("extremes: a leaf plane of any optics over soil of any", "[.extremes]") {
+TEST_CASE("extremes: a leaf plane of any optics over soil of any", "[extremes]") {
   // With 1 W m^-2 from above: on the soil E_s = tau / (1 - back soil), below the plane soil E_s. Where back = soil = 1 no light gets
   // between (tau = 0) and 0/0 is 0: nothing shines there.
   for (const auto& c : cases)
@@ -68,7 +68,7 @@ TEST_CASE("extremes: a leaf plane of any optics over soil of any", "[.extremes]"
       }
 }
 
-TEST_CASE("extremes: two hundred bands at once, each as if it were alone", "[.extremes]") {
+TEST_CASE("extremes: two hundred bands at once, each as if it were alone", "[extremes]") {
   constexpr std::size_t bands = 200;
   std::vector<std::string> names;
   std::vector<double> rho, tau, soil;

@@ -48,7 +48,7 @@ void check_sound(const Run& run, double most_residual = 5e-3) {
 
 }  // namespace
 
-TEST_CASE("extremes: scales of a millionth and a million", "[.extremes]") {
+TEST_CASE("extremes: scales of a millionth and a million", "[extremes]") {
   for (const auto method : both_methods) {
     const auto as_is = solve(crown(placed({})), method, Quality::draft);
     for (const double scale : {1e-6, 1e6}) {
@@ -64,7 +64,7 @@ TEST_CASE("extremes: scales of a millionth and a million", "[.extremes]") {
   }
 }
 
-TEST_CASE("extremes: leaves of a millimetre ten thousand kilometres away", "[.extremes]") {
+TEST_CASE("extremes: leaves of a millimetre ten thousand kilometres away", "[extremes]") {
   for (const auto method : both_methods) {
     const auto near = solve(crown(placed({.scale = 0.004})), method, Quality::draft);
     const auto far = solve(crown(placed({.position = {1e7, -1e7, 10}, .scale = 0.004})), method, Quality::draft);
@@ -79,7 +79,7 @@ TEST_CASE("extremes: leaves of a millimetre ten thousand kilometres away", "[.ex
   CHECK(relative_rms(organ_power(far), organ_power(near)) < 0.03);  // two estimates of 256 samples a facet
 }
 
-TEST_CASE("extremes: slivers a million times as long as wide", "[.extremes]") {
+TEST_CASE("extremes: slivers a million times as long as wide", "[extremes]") {
   // A square in slices of 1e-6 of its width and the rest: as the whole.
   Mesh cut;
   constexpr int slivers = 5;
@@ -107,7 +107,7 @@ TEST_CASE("extremes: slivers a million times as long as wide", "[.extremes]") {
   }
 }
 
-TEST_CASE("extremes: facets smaller than any sampling", "[.extremes]") {
+TEST_CASE("extremes: facets smaller than any sampling", "[extremes]") {
   // A triangle of a micrometre beside a leaf of a metre, and one above it.
   const auto speck = [](double x, double z) { return Mesh{{{x, 0.5, z}, {x + 1e-6, 0.5, z}, {x, 0.5 + 1e-6, z}}, {{0, 1, 2}}}; };
   for (const auto method : both_methods) {
@@ -120,7 +120,7 @@ TEST_CASE("extremes: facets smaller than any sampling", "[.extremes]") {
   }
 }
 
-TEST_CASE("extremes: facets that cross, and a leaf that touches a stem", "[.extremes]") {
+TEST_CASE("extremes: facets that cross, and a leaf that touches a stem", "[extremes]") {
   const Mesh level = square(0.5), upright{{{0.5, 0, 0}, {0.5, 1, 0}, {0.5, 1, 1}, {0.5, 0, 1}}, {{0, 1, 2}, {0, 2, 3}}};
   for (const auto method : both_methods) {
     CAPTURE(name_of(method));
@@ -145,7 +145,7 @@ TEST_CASE("extremes: facets that cross, and a leaf that touches a stem", "[.extr
   }
 }
 
-TEST_CASE("extremes: a facet larger than the scene", "[.extremes]") {
+TEST_CASE("extremes: a facet larger than the scene", "[extremes]") {
   for (const auto method : both_methods) {
     CAPTURE(name_of(method));
     const Mesh roof{{{-500, -500, 1}, {500, -500, 1}, {500, 500, 1}, {-500, 500, 1}}, {{0, 1, 2}, {0, 2, 3}}};
@@ -156,7 +156,7 @@ TEST_CASE("extremes: a facet larger than the scene", "[.extremes]") {
   }
 }
 
-TEST_CASE("extremes: one facet, and none", "[.extremes]") {
+TEST_CASE("extremes: one facet, and none", "[extremes]") {
   const Mesh one{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}};
   for (const auto method : both_methods) {
     CAPTURE(name_of(method));
@@ -173,7 +173,7 @@ TEST_CASE("extremes: one facet, and none", "[.extremes]") {
     CHECK_THROWS_WITH(solve(no_area, method), Catch::Contains("found no facet with an area; expected at least one that light can meet"));
 }
 
-TEST_CASE("extremes: a sun at the zenith and one that grazes", "[.extremes]") {
+TEST_CASE("extremes: a sun at the zenith and one that grazes", "[extremes]") {
   for (const auto method : both_methods)
     for (const double elevation : {90.0, 10.0, 1.0, 0.1}) {
       const double sine = std::sin(elevation * std::numbers::pi / 180);
@@ -193,7 +193,7 @@ TEST_CASE("extremes: a sun at the zenith and one that grazes", "[.extremes]") {
     }
 }
 
-TEST_CASE("extremes: a plant below the ground", "[.extremes]") {
+TEST_CASE("extremes: a plant below the ground", "[extremes]") {
   for (const auto method : both_methods) {
     auto scene = black({square(-1), square(1)});
     scene.ground = flat_ground({3, 3}, {0.5, 0.5}, {6, 6}, {0.5});
@@ -212,7 +212,7 @@ TEST_CASE("extremes: a plant below the ground", "[.extremes]") {
   }
 }
 
-TEST_CASE("extremes: a mirrored copy under a mirrored sun", "[.extremes]") {
+TEST_CASE("extremes: a mirrored copy under a mirrored sun", "[extremes]") {
   auto scene = crown(placed({})), mirrored = crown(placed({.mirror = true}));
   auto& sun = mirrored.states[0].sun->direction;
   sun.x = -sun.x;
@@ -225,7 +225,7 @@ TEST_CASE("extremes: a mirrored copy under a mirrored sun", "[.extremes]") {
   }
 }
 
-TEST_CASE("extremes: a copy exactly on another", "[.extremes]") {
+TEST_CASE("extremes: a copy exactly on another", "[extremes]") {
   // Two copies of a plane: the stack of two with a vanishing gap, whichever lies above.
   constexpr double rho = 0.3, tau = 0.4;
   auto scene = scene_with({"a"}, {uniform_optics("leaf", {rho}, {tau})});

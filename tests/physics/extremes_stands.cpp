@@ -33,7 +33,7 @@ void check_whole(const Run& run, double area) {
 
 }  // namespace
 
-TEST_CASE("extremes: leaf area index from .01 to 50", "[.extremes]") {
+TEST_CASE("extremes: leaf area index from .01 to 50", "[extremes]") {
   // Leaves of all angles stop a vertical beam with probability 1 - exp(-LAI / 2) in the mean; one canopy of n leaves in a cell of 25 leaf
   // areas scatters by less than .15 about it.
   for (const auto method : both_methods)
@@ -56,7 +56,7 @@ TEST_CASE("extremes: leaf area index from .01 to 50", "[.extremes]") {
   }
 }
 
-TEST_CASE("extremes: a cell a thousand times wider than high, and the reverse", "[.extremes]") {
+TEST_CASE("extremes: a cell a thousand times wider than high, and the reverse", "[extremes]") {
   for (const auto method : both_methods) {
     CAPTURE(name_of(method));
     const auto wide = solve(black_canopy(1, 0.5, 40, 40, 0.04 + 1.0), method, Quality::draft);  // leaves stand out of a layer of 4 cm
@@ -74,7 +74,7 @@ TEST_CASE("extremes: a cell a thousand times wider than high, and the reverse", 
   }
 }
 
-TEST_CASE("extremes: a plant that crosses the cell's border", "[.extremes]") {
+TEST_CASE("extremes: a plant that crosses the cell's border", "[extremes]") {
   // Moved by half a cell the scene is the same.
   const auto scene_at = [](double shift) {
     auto scene = scene_with({"PAR", "NIR"}, {{"leaf", {0.07f, 0.42f}, {0.12f, 0.46f}, {0.04f, 0.40f}}});
@@ -98,7 +98,7 @@ TEST_CASE("extremes: a plant that crosses the cell's border", "[.extremes]") {
   }
 }
 
-TEST_CASE("extremes: a hundred thousand structures side by side", "[.extremes]") {
+TEST_CASE("extremes: a hundred thousand structures side by side", "[extremes]") {
   // Tiles of a plane, one organ each: all have what the plane has.
   constexpr int n = 320;
   std::vector<Mesh> tiles;
@@ -121,7 +121,7 @@ TEST_CASE("extremes: a hundred thousand structures side by side", "[.extremes]")
   CHECK(std::abs(run.report.balance[0][0].residual()) < 2e-3 * run.report.balance[0][0].incident);
 }
 
-TEST_CASE("extremes: a hierarchy ten thousand deep", "[.extremes]") {
+TEST_CASE("extremes: a hierarchy ten thousand deep", "[extremes]") {
   // A chain of structures, each with a leaf, against the same leaves side by side.
   const auto meshes = leaves(10'000, 0.02, {1, 1, 1}, 12);
   Plant chain = empty_plant("chain");

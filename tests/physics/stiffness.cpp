@@ -6,7 +6,7 @@
 using namespace sunfleck;
 using namespace stiff_scenes;
 
-TEST_CASE("stiffness: few applications of the operator, whatever the albedo", "[.stiffness]") {
+TEST_CASE("stiffness: few applications of the operator, whatever the albedo", "[stiffness]") {
   for (const auto space : {Space::open, Space::periodic, Space::closed})
     for (const auto method : both_methods)
       for (const double soil : {0.0, 0.2, 1.0}) {
@@ -37,7 +37,7 @@ TEST_CASE("stiffness: few applications of the operator, whatever the albedo", "[
       }
 }
 
-TEST_CASE("stiffness: light behind a lid that hardly lets it out again", "[.stiffness]") {
+TEST_CASE("stiffness: light behind a lid that hardly lets it out again", "[stiffness]") {
   // Lid: rho = 1 - tau on both sides; white soil. E_soil = tau / (1 - rho) = 1 for any tau, but 1 / tau scatterings away.
   for (const auto method : both_methods)
     for (const double tau : {1e-2, 1e-4, 1e-6, 1e-7}) {
