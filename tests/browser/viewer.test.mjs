@@ -173,12 +173,11 @@ test("quantity, range, colour map and state change picture and legend", async ()
   // A range that cannot be is said, and the picture stays.
   await page.getByLabel("Quantity").selectOption("absorbed");
   await page.getByLabel("Logarithmic").check();
-  await settled(page);  // what is refused leaves the picture as it is: it must have been refined before
   await page.getByLabel("From", { exact: true }).fill("-1");
   await page.getByLabel("To", { exact: true }).fill("40");
   await page.getByLabel("To", { exact: true }).press("Enter");
   await page.waitForFunction(() => document.getElementById("status").innerText.includes("numbers above zero"));
-  await settled(page);
+  assert.ok(new Set(await look(page)).size > 50, "the picture stays");
   page.errors = page.errors.filter((error) => !error.includes("400"));
   await closePage(page);
 });
