@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include <sunfleck/instantiation/similarity.hpp>
+#include <sunfleck/core/similarity.hpp>
 #include <sunfleck/scene/placed_scene.hpp>
 
 namespace sunfleck {

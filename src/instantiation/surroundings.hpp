@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include <sunfleck/instantiation/similarity.hpp>
+#include <sunfleck/core/similarity.hpp>
 #include <sunfleck/scene/scene.hpp>
 #include <sunfleck/visibility/copies.hpp>
 

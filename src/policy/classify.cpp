@@ -66,7 +66,7 @@ class Classifier {
   ClassMember member(const SubtreeRef& s, const Similarity& from_representative) const {
     ClassMember m;
     m.structure = {false, entry_of_[s.plant], s.structure};
-    m.from_representative = from_representative.map;
+    m.from_representative = from_representative.affine();
     m.scale = from_representative.scale;
     m.copies = placed_[entry_of_[s.plant]];
     m.area_m2 = plants_[s.plant].moments(s.structure).area;

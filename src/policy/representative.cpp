@@ -68,7 +68,7 @@ Similarity stand_in(const PolicyType& entry, const std::vector<Subtrees>& plants
   const double scale = entry.scale == StandIn::area ? std::sqrt(to.area / from.area) : 1.0;
   const Mat3 turn = alignment(entry.align, plants[member.plant].frame(member.structure)) *
                     glm::transpose(alignment(entry.align, plants[representative.plant].frame(representative.structure)));
-  return {{scale * turn, to.centroid() - scale * (turn * from.centroid())}, scale};
+  return {scale, turn, to.centroid() - scale * (turn * from.centroid())};
 }
 
 }  // namespace sunfleck

@@ -59,23 +59,18 @@ std::optional<Similarity> find_similarity(const std::vector<Triangle>& from, con
     Mat3 sum{0.0};
     for (std::size_t i = 0; i < from.size(); ++i)
       for (std::size_t k = 0; k < 3; ++k) sum += glm::outerProduct(to[i][corner(k)] - b, from[i][k] - a);
-    const Mat3 turn = scale * orthogonal_part(sum, mirrors ? -1.0 : 1.0);
+    const Mat3 turn = orthogonal_part(sum, mirrors ? -1.0 : 1.0), linear = scale * turn;
     bool fits = true;
     for (std::size_t i = 0; i < from.size() && fits; ++i)
-      for (std::size_t k = 0; k < 3 && fits; ++k) fits = glm::length(turn * (from[i][k] - a) + b - to[i][corner(k)]) <= allowed;
-    if (fits) return Similarity{{turn, b - turn * a}, scale};
+      for (std::size_t k = 0; k < 3 && fits; ++k) fits = glm::length(linear * (from[i][k] - a) + b - to[i][corner(k)]) <= allowed;
+    if (fits) return Similarity{scale, turn, b - linear * a};
   }
   return {};
 }
 
 std::optional<double> uniform_scale(const Mat3& linear) {
-  const double scale = std::cbrt(std::abs(glm::determinant(linear)));
-  if (!(scale > 0) || !std::isfinite(scale)) return {};
-  const Mat3 g = glm::transpose(linear) * linear / (scale * scale);
-  for (int c = 0; c < 3; ++c)
-    for (int r = 0; r < 3; ++r)
-      if (std::abs(g[c][r] - (c == r ? 1.0 : 0.0)) > 1e-9) return {};
-  return scale;
+  const auto found = similarity_of({linear, Vec3{0.0}}, 1e-9);
+  return found ? std::optional(found->scale) : std::nullopt;
 }
 
 Mat3 alignment(Alignment align, const Affine& frame) {

@@ -1,19 +1,13 @@
-// Rotation, mirror, uniform scale and move that take one list of facets to another.
+// The similarity that takes one list of facets to another; rotations in maps and frames.
 #pragma once
 
 #include <optional>
 #include <vector>
 
-#include <sunfleck/core/vector.hpp>
+#include <sunfleck/core/similarity.hpp>
 #include <sunfleck/policy/policy.hpp>
 
 namespace sunfleck {
-
-/// p -> scale * turn * p + move, as an affine map and its scale.
-struct Similarity {
-  Affine map;
-  double scale = 1.0;
-};
 
 /// The similarity that takes facet i of `from` to facet i of `to` for all i, corners in order (where it mirrors, corners 1 and 2 swapped,
 /// as copies have them), each corner within `tolerance` times the root mean squared distance from the centre. Nothing if there is none, or

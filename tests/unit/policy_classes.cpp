@@ -311,8 +311,8 @@ TEST_CASE("Similarities of flat and symmetric facets keep fronts", "[policy]") {
       // A flat mirrored copy is also a turned one: either answer must map fronts to fronts.
       const Vec3 normal = area_vector(to[i]);
       Triangle image = from[i];
-      for (auto& p : image) p = found->map.point(p);
-      if (found->map.mirrors()) std::swap(image[1], image[2]);
+      for (auto& p : image) p = found->point(p);
+      if (found->affine().mirrors()) std::swap(image[1], image[2]);
       CHECK(glm::length(area_vector(image) - normal) < 1e-12);
     }
   }

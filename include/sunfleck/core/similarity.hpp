@@ -1,4 +1,4 @@
-// Rotation or mirror, uniform scale and move: the maps under which light in a structure is the same.
+// Rotation or mirror, uniform scale and move: the maps under which shapes are alike, and the light in them is the same.
 #pragma once
 
 #include <optional>
@@ -20,7 +20,8 @@ struct Similarity {
   Affine affine() const { return {turn * scale, move}; }
 };
 
-/// None if the map stretches or shears by more than 1e-6: then copies share geometry, not light.
-std::optional<Similarity> similarity_of(const Affine& map);
+/// The map as a similarity, of scale |det linear|^(1/3). None if linear^T linear / scale^2 is off the identity by more than `tolerance` in
+/// any entry (the map stretches or shears: copies then share geometry, not light), or if the scale is zero or not finite.
+std::optional<Similarity> similarity_of(const Affine& map, double tolerance = 1e-6);
 
 }  // namespace sunfleck
