@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include <sunfleck/core/timer.hpp>
-#include <sunfleck/format/policy_toml.hpp>
+#include <sunfleck/policy/policy_toml.hpp>
 #include <sunfleck/format/scene_toml.hpp>
 #include <sunfleck/original/originals.hpp>
 #include <sunfleck/original/suggest.hpp>

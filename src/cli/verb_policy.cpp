@@ -6,7 +6,7 @@
 #include <tbb/global_control.h>
 
 #include <sunfleck/core/error.hpp>
-#include <sunfleck/format/policy_toml.hpp>
+#include <sunfleck/policy/policy_toml.hpp>
 #include <sunfleck/format/scene_toml.hpp>
 #include <sunfleck/original/suggest.hpp>
 

@@ -5,7 +5,7 @@
 #include <original/partition.hpp>
 #include <sunfleck/core/error.hpp>
 #include <sunfleck/core/sampling.hpp>
-#include <sunfleck/format/policy_toml.hpp>
+#include <sunfleck/policy/policy_toml.hpp>
 #include <sunfleck/original/suggest.hpp>
 #include <sunfleck/plant/build.hpp>
 #include <sunfleck/scene/build.hpp>

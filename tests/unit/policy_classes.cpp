@@ -9,7 +9,7 @@
 #include <policy/subtrees.hpp>
 #include <sunfleck/core/error.hpp>
 #include <sunfleck/core/sampling.hpp>
-#include <sunfleck/format/policy_toml.hpp>
+#include <sunfleck/policy/policy_toml.hpp>
 #include <sunfleck/format/read_plant.hpp>
 #include <sunfleck/format/species_toml.hpp>
 #include <sunfleck/plant/build.hpp>

@@ -6,7 +6,7 @@
 
 #include <format_files.hpp>
 #include <sunfleck/core/error.hpp>
-#include <sunfleck/format/policy_toml.hpp>
+#include <sunfleck/policy/policy_toml.hpp>
 
 using namespace sunfleck;
 

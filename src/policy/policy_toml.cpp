@@ -1,4 +1,4 @@
-#include <sunfleck/format/policy_toml.hpp>
+#include <sunfleck/policy/policy_toml.hpp>
 
 #include <cmath>
 #include <limits>
@@ -7,7 +7,7 @@
 
 #include <sunfleck/core/error.hpp>
 
-#include <format/toml_value.hpp>
+#include "format/toml_value.hpp"
 
 namespace sunfleck {
 
