@@ -9,9 +9,11 @@
 #include <unistd.h>
 
 #include <sunfleck/core/error.hpp>
+#include <sunfleck/format/import_scene.hpp>
 #include <sunfleck/format/read_plant.hpp>
 #include <sunfleck/format/scene_toml.hpp>
 #include <sunfleck/format/species_toml.hpp>
+#include <sunfleck/policy/policy_toml.hpp>
 #include <sunfleck/result/compare.hpp>
 #include <sunfleck/result/result_reader.hpp>
 #include <sunfleck/scene/counts.hpp>
@@ -34,11 +36,14 @@ class Folder {
     std::filesystem::create_directories(path_);
     put("leaf.obj", "g Leaf\nusemtl green\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     put("positions.csv", "x,y\n0,0\n2,1\n");
+    put("field.can", "p 1 100001000000 3 0 0 50 10 0 50 0 10 50\n");
+    put("par.opt", "s d 0.15\ne d 0.10 d 0.11 0.05 d 0.12 0.05\n");
   }
   ~Folder() {
     std::error_code ignored;
     std::filesystem::remove_all(path_, ignored);
   }
+  std::string file(const std::string& name) const { return (path_ / name).string(); }
   std::string put(const std::string& name, const std::string& content) const {
     const auto file = path_ / name;
     std::ofstream(file, std::ios::binary | std::ios::trunc) << content;
@@ -75,6 +80,29 @@ void read_plant_as(const char* name, Bytes bytes) {
   check_plant(plant);  // what a reader lets through is sound
 }
 
+void read_and_write_policy(Bytes bytes) {
+  const std::string text = policy_text(read_policy(folder().put("policy.toml", bytes)));
+  try {
+    if (policy_text(read_policy(folder().put("written.toml", text))) != text) throw std::logic_error("a policy reads back as another");
+  } catch (const InputError& error) {
+    throw std::logic_error(std::string("written, but not read: ") + error.what());
+  }
+}
+
+/// What an import lets through is a scene that is read.
+void import_with(std::vector<std::string> files) {
+  ImportChoice choice;
+  choice.files = std::move(files);
+  choice.output = folder().put("imported.toml", std::string());
+  const ImportedScene imported = import_scene(choice);
+  folder().put("imported.toml", imported.text);
+  try {
+    check_scene(read_scene(choice.output));
+  } catch (const InputError& error) {
+    throw std::logic_error(std::string("imported, but not read: ") + error.what());
+  }
+}
+
 const std::map<std::string, std::function<void(Bytes)>>& readers() {
   static const std::map<std::string, std::function<void(Bytes)>> all{
       {"can", [](Bytes b) { read_plant_as("plant.can", b); }},
@@ -87,10 +115,24 @@ const std::map<std::string, std::function<void(Bytes)>>& readers() {
              "[[plant]]\nname = \"leaf\"\nfile = \"leaf.obj\"\noptics = { \"*\" = \"leaf\" }\nplace = [ { file = \"fuzzed.csv\" } ]\n");
          check_scene(read_scene(scene));
        }},
+      {"light",
+       [](Bytes b) {
+         import_with({folder().file("field.can"), folder().file("par.opt"), folder().put("fuzzed.light", b)});
+       }},
       {"obj", [](Bytes b) { read_plant_as("plant.obj", b); }},
+      {"ops", [](Bytes b) { import_with({folder().put("fuzzed.ops", b)}); }},
+      {"opt",
+       [](Bytes b) {
+         import_with({folder().file("field.can"), folder().put("fuzzed.opt", b)});
+       }},
       {"opf", [](Bytes b) { read_plant_as("plant.opf", b); }},
+      {"pattern",
+       [](Bytes b) {
+         import_with({folder().file("field.can"), folder().file("par.opt"), folder().put("fuzzed.8", b)});
+       }},
       {"plant_h5", [](Bytes b) { read_plant_as("plant.h5", changed_plant_file(b)); }},
       {"ply", [](Bytes b) { read_plant_as("plant.ply", b); }},
+      {"policy", [](Bytes b) { read_and_write_policy(b); }},
       {"result_h5", [](Bytes b) { read_all_of_result(folder().put("result.h5", changed_result_file(b))); }},
       {"scene",
        [](Bytes b) {

@@ -35,6 +35,7 @@ TEST_CASE("The corpus of every parser is read or refused, quickly", "[hostile][c
 
 TEST_CASE("Every folder of the corpus has its parser", "[hostile][corpus]") {
   for (const auto& entry : std::filesystem::directory_iterator(std::string(SUNFLECK_SOURCE_DIR) + "/tests/hostile/corpus")) {
+    INFO(entry.path());
     const auto& known = fuzz::formats();
     CHECK(std::find(known.begin(), known.end(), entry.path().filename().string()) != known.end());
   }
