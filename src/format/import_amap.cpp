@@ -197,7 +197,8 @@ class OpsReader {
     for (const auto& o : objects_)
       if (std::find(plants.begin(), plants.end(), std::pair{o.file, o.group}) == plants.end()) plants.emplace_back(o.file, o.group);
     std::set<std::string> names;
-    for (const auto& [file, group] : plants) {
+    for (const auto& plant : plants) {
+      const auto &file = plant.first, &group = plant.second;  // clang 14 lets no lambda capture a structured binding
       const auto first =
           std::find_if(objects_.begin(), objects_.end(), [&](const Object& o) { return o.file == file && o.group == group; });
       line_ = first->line;
