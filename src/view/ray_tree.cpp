@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include <sunfleck/core/error.hpp>
@@ -12,15 +13,6 @@ namespace {
 
 // Geometries of a node: its triangles first, then its children.
 constexpr unsigned triangles_id = 0, children_id = 1;
-
-RTCRay ray_of(const Query& q, float from, float to) {
-  RTCRay ray{};
-  ray.org_x = static_cast<float>(q.origin.x), ray.org_y = static_cast<float>(q.origin.y), ray.org_z = static_cast<float>(q.origin.z);
-  ray.dir_x = static_cast<float>(q.direction.x), ray.dir_y = static_cast<float>(q.direction.y),
-  ray.dir_z = static_cast<float>(q.direction.z);
-  ray.tnear = from, ray.tfar = to, ray.mask = ~0u;
-  return ray;
-}
 
 Vec3 linear(const std::array<float, 12>& m, const Vec3& v) {
   return {m[0] * v.x + m[1] * v.y + m[2] * v.z, m[4] * v.x + m[5] * v.y + m[6] * v.z, m[8] * v.x + m[9] * v.y + m[10] * v.z};
@@ -51,11 +43,8 @@ void intersect(const RTCIntersectFunctionNArguments* a) {
   auto& outer = *static_cast<Query*>(a->context);
   auto& ray = *reinterpret_cast<RTCRayHit*>(a->rayhit);  // one ray at a time: the layouts are the same
   Query inner = into(outer, static_cast<const Node*>(a->geometryUserPtr)->children[a->primID]);
-  RTCRayHit found{};
-  found.ray = ray_of(inner, ray.ray.tnear, ray.ray.tfar);
-  found.hit.geomID = found.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-  rtcIntersect1(inner.node->scene.get(), &inner, &found);
-  if (found.hit.geomID == RTC_INVALID_GEOMETRY_ID) return;
+  RTCRayHit found;
+  if (!embree_meets(inner.node->scene.get(), inner, embree_ray(inner.origin, inner.direction, ray.ray.tnear, ray.ray.tfar), found)) return;
   outer.facet = facet_met(inner, found.hit);
   ray.ray.tfar = found.ray.tfar;
   ray.hit = found.hit;
@@ -66,9 +55,8 @@ void occluded(const RTCOccludedFunctionNArguments* a) {
   if (a->valid[0] == 0) return;
   auto& ray = *reinterpret_cast<RTCRay*>(a->ray);
   Query inner = into(*static_cast<Query*>(a->context), static_cast<const Node*>(a->geometryUserPtr)->children[a->primID]);
-  RTCRay found = ray_of(inner, ray.tnear, ray.tfar);
-  rtcOccluded1(inner.node->scene.get(), &inner, &found);
-  if (found.tfar < 0) ray.tfar = found.tfar;
+  if (embree_occluded(inner.node->scene.get(), inner, embree_ray(inner.origin, inner.direction, ray.tnear, ray.tfar)))
+    ray.tfar = -std::numeric_limits<float>::infinity();  // Embree's sign for it
 }
 
 /// Leaves out the facet on which the ray starts.
@@ -79,16 +67,7 @@ void leave_start(const RTCFilterFunctionNArguments* a) {
 
 }  // namespace
 
-bool Tree::monitor(void* self, ssize_t bytes, bool) {
-  static_cast<Tree*>(self)->held_ += bytes;
-  return true;
-}
-
 Tree::Tree(const DrawnScene& scene, std::size_t written_out) {
-  // One thread builds: the trees, and with them which of two facets a ray through their common edge meets, are then always the same.
-  device_.reset(rtcNewDevice("threads=1"));
-  if (!device_) throw Error("Embree could not be started (error " + std::to_string(rtcGetDeviceError(nullptr)) + ")");
-  rtcSetDeviceMemoryMonitorFunction(device_.get(), monitor, this);
   const auto& g = scene.geometry();
   std::map<const Plant*, const Node*> models;
   std::size_t facets = 0;
@@ -161,33 +140,19 @@ Node* Tree::plant_node(const Plant& plant, bool write_out) {
 }
 
 void Tree::set_triangles(Node& node, const std::vector<Triangle>& triangles) {
-  node.scene.reset(rtcNewScene(device_.get()));
-  rtcSetSceneFlags(node.scene.get(), static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION));
+  node.scene = device_.new_scene(RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION);
   if (triangles.empty()) return;
   Box box;
   for (const auto& t : triangles)
     for (const auto& p : t) box.add(p);
   node.middle = box.centre();
   node.box = {box.low - node.middle, box.high - node.middle};
-  const std::size_t n = triangles.size();
-  RTCGeometry geometry = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
-  auto* vertices =
-      static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), 3 * n));
-  auto* indices =
-      static_cast<unsigned*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned), n));
-  if (!vertices || !indices) {
-    rtcReleaseGeometry(geometry);
-    throw Error("not enough memory to draw " + std::to_string(n) + " facets");
+  EmbreeTriangles attached(device_, triangles.size());
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    const Triangle& t = triangles[i];
+    attached.set(i, {t[0] - node.middle, t[1] - node.middle, t[2] - node.middle});
   }
-  for (std::size_t t = 0; t < n; ++t)
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Vec3 p = triangles[t][k] - node.middle;
-      for (int c = 0; c < 3; ++c) vertices[9 * t + 3 * k + static_cast<std::size_t>(c)] = static_cast<float>(p[c]);
-      indices[3 * t + k] = static_cast<unsigned>(3 * t + k);
-    }
-  rtcCommitGeometry(geometry);
-  rtcAttachGeometryByID(node.scene.get(), geometry, triangles_id);
-  rtcReleaseGeometry(geometry);
+  attached.attach(node.scene.get(), triangles_id);
 }
 
 void Tree::place(Node& parent, const Node& child, const Affine& map, std::uint64_t first) {
@@ -238,8 +203,7 @@ void Tree::finish(Node& node) {
     rtcReleaseGeometry(geometry);
   }
   rtcCommitScene(node.scene.get());
-  if (const auto error = rtcGetDeviceError(device_.get()); error != RTC_ERROR_NONE)
-    throw Error("Embree could not build its trees: not enough memory? (error " + std::to_string(error) + ")");
+  device_.check(std::to_string(node.children.size()) + " copies and the facets of a plant");
   node.child_bounds = {};
   node.children.shrink_to_fit();
 }
@@ -254,24 +218,22 @@ PlacedHit Tree::trace(const Node* node, const Vec3& origin, const Vec3& directio
   query.start = start;
   if (start != no_placed_facet) query.filter = leave_start;
   PlacedHit hit;
-  RTCRayHit found{};
-  found.ray = ray_of(query, static_cast<float>(std::max(0.0, from)), static_cast<float>(to));
-  if (!(found.ray.tnear <= found.ray.tfar)) return hit;
+  from = std::max(0.0, from);
+  if (!(static_cast<float>(from) <= static_cast<float>(to))) return hit;
+  const RTCRay ray = embree_ray(query.origin, query.direction, from, to);
   if (any) {
-    rtcOccluded1(node->scene.get(), &query, &found.ray);
-    if (found.ray.tfar < 0) hit.facet = 0, hit.distance = 0;
+    if (embree_occluded(node->scene.get(), query, ray)) hit.facet = 0, hit.distance = 0;
     return hit;
   }
-  found.hit.geomID = found.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-  rtcIntersect1(node->scene.get(), &query, &found);
-  if (found.hit.geomID == RTC_INVALID_GEOMETRY_ID) return hit;
+  RTCRayHit found;
+  if (!embree_meets(node->scene.get(), query, ray, found)) return hit;
   hit.facet = facet_met(query, found.hit);
   hit.u = found.hit.u, hit.v = found.hit.v, hit.distance = found.ray.tfar;
   return hit;
 }
 
 std::size_t Tree::bytes() const {
-  std::size_t sum = static_cast<std::size_t>(std::max<std::int64_t>(0, held_));
+  std::size_t sum = device_.bytes();
   for (const auto& n : nodes_) sum += n->children.capacity() * sizeof(Child) + n->facet_of.capacity() * sizeof(std::uint32_t);
   return sum;
 }

@@ -1,24 +1,18 @@
 // Trees of triangles that hold trees: the acceleration structure of PlacedRays.
 #pragma once
 
-#include <embree3/rtcore.h>
-
 #include <array>
-#include <atomic>
 #include <map>
 #include <memory>
 #include <vector>
 
 #include <sunfleck/view/placed_rays.hpp>
 
+#include "visibility/embree_scene.hpp"
+
 namespace sunfleck::raytree {
 
 struct Node;
-
-struct Release {
-  void operator()(RTCDevice d) const { rtcReleaseDevice(d); }
-  void operator()(RTCScene s) const { rtcReleaseScene(s); }
-};
 
 /// A copy of a node within another.
 struct Child {
@@ -34,7 +28,7 @@ struct Node {
   std::vector<std::uint32_t> facet_of;  ///< [triangles]; empty: triangle = facet
   std::vector<Child> children;
   std::vector<RTCBounds> child_bounds;  ///< until the tree stands
-  std::unique_ptr<RTCSceneTy, Release> scene;
+  EmbreeScenePointer scene;
 
   std::uint64_t facet(unsigned triangle) const { return facet_of.empty() ? triangle : facet_of[triangle]; }
 };
@@ -76,10 +70,8 @@ class Tree {
   static void place(Node& parent, const Node& child, const Affine& map, std::uint64_t first);
   void set_triangles(Node& node, const std::vector<Triangle>& triangles);
   void finish(Node& node);
-  static bool monitor(void* self, ssize_t bytes, bool);
 
-  std::atomic<std::int64_t> held_{0};
-  std::unique_ptr<RTCDeviceTy, Release> device_;  ///< after held_, which it counts down when it goes
+  EmbreeDevice device_{EmbreeDevice::Trees::same_for_any_threads};
   std::vector<std::unique_ptr<Node>> nodes_;
   const Node* world_ = nullptr;
   const Node* ground_ = nullptr;

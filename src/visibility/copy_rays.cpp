@@ -1,13 +1,14 @@
 #include <sunfleck/visibility/copies.hpp>
 
-#include <embree3/rtcore.h>
-
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <limits>
 
+#include <fmt/format.h>
+
 #include <sunfleck/core/error.hpp>
+
+#include "visibility/embree_scene.hpp"
 
 namespace sunfleck {
 
@@ -16,39 +17,22 @@ namespace {
 constexpr double least_slope = 1e-4;  // of rays in periodic scenes
 constexpr double most_cells = 1e6;    // that a ray is wrapped through
 
-struct Release {
-  void operator()(RTCDevice d) const { rtcReleaseDevice(d); }
-  void operator()(RTCScene s) const { rtcReleaseScene(s); }
-};
-using DevicePointer = std::unique_ptr<RTCDeviceTy, Release>;
-using ScenePointer = std::unique_ptr<RTCSceneTy, Release>;
-
 }  // namespace
 
 struct CopyRays::Impl {
   explicit Impl(const CopyScene& s) : scene(s) {
-    device.reset(rtcNewDevice(nullptr));
-    if (!device) throw Error("Embree could not be started");
-    rtcSetDeviceMemoryMonitorFunction(device.get(), &Impl::monitor, this);
     box = extent();
     centre = box.empty() ? Vec3{0.0} : box.centre();
     if (scene.periodic) {
       centre.x = scene.periodic->x_low;
       centre.y = scene.periodic->y_low;
     }
-    top.reset(rtcNewScene(device.get()));
-    rtcSetSceneFlags(top.get(), RTC_SCENE_FLAG_COMPACT);
+    top = device.new_scene(RTC_SCENE_FLAG_COMPACT);
     for (const auto* surface : scene.surfaces) parts.push_back(surface_scene(*surface));
     for (std::uint32_t c = 0; c < scene.copies.size(); ++c) add_copy(c);
     if (!scene.ground.empty()) add_ground();
     rtcCommitScene(top.get());
-    if (const auto error = rtcGetDeviceError(device.get()); error != RTC_ERROR_NONE)
-      throw Error(error == RTC_ERROR_OUT_OF_MEMORY ? "not enough memory for the rays' acceleration structure" : "Embree failed");
-  }
-
-  static bool monitor(void* self, ssize_t bytes, bool) {
-    static_cast<Impl*>(self)->held += bytes;
-    return true;
+    device.check(fmt::format("{} copies and {} facets of the ground", instance_copy.size(), scene.ground.size()));
   }
 
   static Box box_of(const Surface& s, const Affine& map) {
@@ -68,37 +52,23 @@ struct CopyRays::Impl {
     return b;
   }
 
-  ScenePointer surface_scene(const Surface& s) {
-    ScenePointer out(rtcNewScene(device.get()));
-    rtcSetSceneFlags(out.get(), RTC_SCENE_FLAG_COMPACT);
-    const RTCGeometry g = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
-    const std::size_t n = s.size();
-    auto* vertex = static_cast<float*>(rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, 3 * n));
-    auto* index = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, n));
-    if (!vertex || !index) throw Error("not enough memory for the rays' geometry");
-    for (std::size_t t = 0; t < n; ++t)
-      for (std::size_t k = 0; k < 9; ++k) vertex[9 * t + k] = s.split[t] == 0 ? 0.0f : s.corner[k][t];
-    for (std::uint32_t i = 0; i < 3 * n; ++i) index[i] = i;
-    rtcCommitGeometry(g);
-    rtcAttachGeometry(out.get(), g);
-    rtcReleaseGeometry(g);
+  EmbreeScenePointer surface_scene(const Surface& s) {
+    EmbreeScenePointer out = device.new_scene(RTC_SCENE_FLAG_COMPACT);
+    EmbreeTriangles triangles(device, s.size());
+    for (std::size_t t = 0; t < s.size(); ++t) {
+      Triangle corners;
+      for (std::size_t k = 0; k < 9; ++k) corners[k / 3][static_cast<int>(k % 3)] = s.corner[k][t];
+      triangles.set(t, corners, s.split[t] != 0);
+    }
+    triangles.attach(out.get(), 0);
     rtcCommitScene(out.get());
     return out;
   }
 
   void add_instance(std::uint32_t c, const Vec3& moved) {
     const auto& copy = scene.copies[c];
-    const RTCGeometry g = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_INSTANCE);
-    rtcSetGeometryInstancedScene(g, parts[copy.surface].get());
-    const Vec3 t = copy.map.point(scene.surfaces[copy.surface]->origin) + moved - centre;
-    float x[12];
-    for (int column = 0; column < 3; ++column)
-      for (int row = 0; row < 3; ++row) x[3 * column + row] = static_cast<float>(copy.map.linear[column][row]);
-    for (int row = 0; row < 3; ++row) x[9 + row] = static_cast<float>(t[row]);
-    rtcSetGeometryTransform(g, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, x);
-    rtcCommitGeometry(g);
-    rtcAttachGeometryByID(top.get(), g, static_cast<unsigned>(instance_copy.size()));
-    rtcReleaseGeometry(g);
+    const Vec3 move = copy.map.point(scene.surfaces[copy.surface]->origin) + moved - centre;
+    attach_instance(device, top.get(), static_cast<unsigned>(instance_copy.size()), parts[copy.surface].get(), copy.map.linear, move);
     instance_copy.push_back(c);
     instance_moved.push_back(moved);
   }
@@ -120,34 +90,19 @@ struct CopyRays::Impl {
   }
 
   void add_ground() {
-    const RTCGeometry g = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
-    const std::size_t n = scene.ground.size();
-    auto* vertex = static_cast<float*>(rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12, 3 * n));
-    auto* index = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, n));
-    if (!vertex || !index) throw Error("not enough memory for the rays' geometry");
-    for (std::size_t t = 0; t < n; ++t)
-      for (int k = 0; k < 3; ++k)
-        for (int axis = 0; axis < 3; ++axis) vertex[9 * t + 3 * k + axis] = static_cast<float>(scene.ground[t][k][axis] - centre[axis]);
-    for (std::uint32_t i = 0; i < 3 * n; ++i) index[i] = i;
-    rtcCommitGeometry(g);
-    ground_id = static_cast<unsigned>(instance_copy.size());
-    rtcAttachGeometryByID(top.get(), g, ground_id);
-    rtcReleaseGeometry(g);
+    EmbreeTriangles triangles(device, scene.ground.size());
+    for (std::size_t i = 0; i < scene.ground.size(); ++i) {
+      const Triangle& t = scene.ground[i];
+      triangles.set(i, {t[0] - centre, t[1] - centre, t[2] - centre});
+    }
+    triangles.attach(top.get(), static_cast<unsigned>(instance_copy.size()));
   }
 
   /// The first thing between `from` and `to` along the ray; false if there is none.
   bool segment(const Vec3& origin, const Vec3& d, double from, double to, RTCRayHit& r) const {
-    r = {};
-    r.ray.org_x = static_cast<float>(origin.x), r.ray.org_y = static_cast<float>(origin.y), r.ray.org_z = static_cast<float>(origin.z);
-    r.ray.dir_x = static_cast<float>(d.x), r.ray.dir_y = static_cast<float>(d.y), r.ray.dir_z = static_cast<float>(d.z);
-    r.ray.tnear = static_cast<float>(from);
-    r.ray.tfar = static_cast<float>(to);
-    r.ray.mask = 0xffffffffu;
-    r.hit.geomID = r.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
-    rtcIntersect1(top.get(), &context, &r);
-    return r.hit.geomID != RTC_INVALID_GEOMETRY_ID;
+    return embree_meets(top.get(), context, embree_ray(origin, d, from, to), r);
   }
 
   CopyHit found(const RTCRayHit& r, const Vec3& point, const Vec3& moved) const {
@@ -197,15 +152,13 @@ struct CopyRays::Impl {
   }
 
   const CopyScene& scene;
-  std::atomic<std::int64_t> held{0};
-  DevicePointer device;
-  std::vector<ScenePointer> parts;
-  ScenePointer top;
+  EmbreeDevice device{EmbreeDevice::Trees::same_for_any_threads};
+  std::vector<EmbreeScenePointer> parts;
+  EmbreeScenePointer top;
   Vec3 centre{0.0};
   Box box;
   std::vector<std::uint32_t> instance_copy;
   std::vector<Vec3> instance_moved;
-  unsigned ground_id = 0;
 };
 
 CopyRays::CopyRays(const CopyScene& scene) : impl_(std::make_unique<Impl>(scene)) {}
@@ -220,8 +173,7 @@ bool CopyRays::occluded(const Vec3& origin, const Vec3& direction, double skip, 
 }
 
 std::size_t CopyRays::bytes() const {
-  return static_cast<std::size_t>(impl_->held.load()) + impl_->instance_copy.capacity() * 4 +
-         impl_->instance_moved.capacity() * sizeof(Vec3);
+  return impl_->device.bytes() + impl_->instance_copy.capacity() * 4 + impl_->instance_moved.capacity() * sizeof(Vec3);
 }
 
 }  // namespace sunfleck

@@ -1,6 +1,5 @@
 #include <sunfleck/visibility/quick_rays.hpp>
 
-#include <embree3/rtcore.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -8,6 +7,8 @@
 #include <string>
 
 #include <sunfleck/core/error.hpp>
+
+#include "visibility/embree_scene.hpp"
 
 namespace sunfleck {
 
@@ -25,51 +26,29 @@ void leave_start_out(const RTCFilterFunctionNArguments* a) {
 }  // namespace
 
 struct QuickRays::Impl {
-  struct Release {
-    void operator()(RTCDevice d) const { rtcReleaseDevice(d); }
-    void operator()(RTCScene s) const { rtcReleaseScene(s); }
-  };
+  explicit Impl(const FacetScene& s) : scene(s) {}
+
   const FacetScene& scene;
   Vec3 origin{0.0};
   double size = 1.0;
-  std::unique_ptr<RTCDeviceTy, Release> device;
-  std::unique_ptr<RTCSceneTy, Release> embree;
+  EmbreeDevice device{EmbreeDevice::Trees::quick};
+  EmbreeScenePointer embree;
 };
 
-QuickRays::QuickRays(const FacetScene& scene) : impl_(std::make_unique<Impl>(Impl{.scene = scene, .device = nullptr, .embree = nullptr})) {
+QuickRays::QuickRays(const FacetScene& scene) : impl_(std::make_unique<Impl>(scene)) {
   auto& i = *impl_;
   if (scene.bounds.empty()) return;
   i.origin = scene.bounds.centre(), i.size = glm::length(scene.bounds.size());
-  i.device.reset(rtcNewDevice(nullptr));
-  if (!i.device) throw Error("Embree could not be started (error " + std::to_string(rtcGetDeviceError(nullptr)) + ")");
-  i.embree.reset(rtcNewScene(i.device.get()));
-  rtcSetSceneFlags(i.embree.get(), RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION);
+  i.embree = i.device.new_scene(RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION);
   rtcSetSceneBuildQuality(i.embree.get(), RTC_BUILD_QUALITY_LOW);
-  const std::size_t n = scene.size();
-  RTCGeometry geometry = rtcNewGeometry(i.device.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
-  auto* vertices =
-      static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), 3 * n));
-  auto* indices =
-      static_cast<unsigned*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned), n));
-  if (!vertices || !indices) {
-    rtcReleaseGeometry(geometry);
-    throw Error("not enough memory for the geometry of " + std::to_string(n) + " facets");
-  }
-  tbb::parallel_for(std::size_t{0}, n, [&](std::size_t f) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Vec3 p = scene.corners[f][k] - i.origin;
-      for (int c = 0; c < 3; ++c) vertices[9 * f + 3 * k + static_cast<std::size_t>(c)] = static_cast<float>(p[c]);
-      // A facet without area names one corner three times and is met by no ray.
-      indices[3 * f + k] = static_cast<unsigned>(3 * f + (scene.area[f] > 0.0f ? k : 0));
-    }
+  EmbreeTriangles triangles(i.device, scene.size());
+  tbb::parallel_for(std::size_t{0}, scene.size(), [&](std::size_t f) {
+    const Triangle& t = scene.corners[f];
+    triangles.set(f, {t[0] - i.origin, t[1] - i.origin, t[2] - i.origin}, scene.area[f] > 0.0f);
   });
-  rtcSetGeometryBuildQuality(geometry, RTC_BUILD_QUALITY_LOW);
-  rtcCommitGeometry(geometry);
-  rtcAttachGeometry(i.embree.get(), geometry);
-  rtcReleaseGeometry(geometry);
+  triangles.attach(i.embree.get(), 0, RTC_BUILD_QUALITY_LOW);
   rtcCommitScene(i.embree.get());
-  if (const auto error = rtcGetDeviceError(i.device.get()); error != RTC_ERROR_NONE)
-    throw Error("Embree could not build its tree over " + std::to_string(n) + " facets (error " + std::to_string(error) + ")");
+  i.device.check(std::to_string(scene.size()) + " facets");
 }
 
 QuickRays::~QuickRays() = default;
@@ -88,15 +67,8 @@ RayHit QuickRays::first_hit(const Vec3& origin, const Vec3& direction, std::uint
   rtcInitIntersectContext(&query);
   query.start = start;
   if (start != no_facet) query.filter = leave_start_out;
-  RTCRayHit ray{};
-  ray.ray.org_x = static_cast<float>(q.x), ray.ray.org_y = static_cast<float>(q.y), ray.ray.org_z = static_cast<float>(q.z);
-  ray.ray.dir_x = static_cast<float>(direction.x), ray.ray.dir_y = static_cast<float>(direction.y);
-  ray.ray.dir_z = static_cast<float>(direction.z);
-  ray.ray.tnear = 0.0f, ray.ray.tfar = static_cast<float>(std::min(range - begin, 1e30));
-  ray.ray.mask = 0xffffffffu;
-  ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-  rtcIntersect1(impl_->embree.get(), &query, &ray);
-  if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return hit;
+  RTCRayHit ray;
+  if (!embree_meets(impl_->embree.get(), query, embree_ray(q, direction, 0.0, std::min(range - begin, 1e30)), ray)) return hit;
   hit.facet = ray.hit.primID;
   hit.front = glm::dot(direction, area_vector(impl_->scene.corners[hit.facet])) < 0.0;
   hit.u = std::clamp(static_cast<double>(ray.hit.u), 0.0, 1.0), hit.v = std::clamp(static_cast<double>(ray.hit.v), 0.0, 1.0 - hit.u);
