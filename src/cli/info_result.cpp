@@ -26,6 +26,52 @@ std::string shape_text(const std::vector<std::size_t>& dims) {
   return fmt::format("[{}]", fmt::join(dims, ", "));
 }
 
+/// Mean of a sensor's cells by area, in a state and band.
+double sensor_mean(const StoredSensor& sensor, const std::vector<float>& values, std::size_t state, std::size_t band, std::size_t bands) {
+  double sum = 0.0, area = 0.0;
+  for (std::size_t k = 0; k < sensor.size(); ++k) {
+    sum += double{sensor.area[k]} * values[(state * sensor.size() + k) * bands + band];
+    area += sensor.area[k];
+  }
+  return area > 0.0 ? sum / area : 0.0;
+}
+
+void add_devices(const Result& r, Json& json) {
+  const std::size_t bands = r.bands().size();
+  for (const auto& lamp : r.lamps()) {
+    Json row{{"name", lamp.name}, {"copies", lamp.copies}};
+    for (std::size_t b = 0; b < bands; ++b) row["power"][r.bands()[b]] = lamp.power[b];
+    for (const bool on : lamp.shines) row["shines"].push_back(on);
+    json["lamps"].push_back(row);
+  }
+  for (const auto& sensor : r.sensors()) {
+    Json row{{"name", sensor.name}, {"kind", sensor.kind}, {"cells", sensor.size()}};
+    for (std::size_t s = 0; s < r.states().size(); ++s)
+      for (std::size_t b = 0; b < bands; ++b) {
+        row["mean"][r.bands()[b]].push_back(sensor_mean(sensor, sensor.reading.irradiance, s, b, bands));
+        if (!sensor.reading.back.empty()) row["mean_back"][r.bands()[b]].push_back(sensor_mean(sensor, sensor.reading.back, s, b, bands));
+      }
+    json["sensors"].push_back(row);
+  }
+}
+
+void print_devices(const Result& r) {
+  const std::size_t bands = r.bands().size();
+  for (const auto& lamp : r.lamps())
+    fmt::print("lamp       {}: {}, {:g} {} in all\n", lamp.name, counted(lamp.copies, "copy", "copies"), fmt::join(lamp.power, " / "),
+               r.band_units()[0] == "W m^-2" ? "W" : "umol/s");
+  for (const auto& sensor : r.sensors()) {
+    fmt::print("sensor     {}: {}, {}\n", sensor.name, sensor.kind, counted(sensor.size(), "cell", "cells"));
+    for (std::size_t s = 0; s < r.states().size(); ++s)
+      for (std::size_t b = 0; b < bands; ++b) {
+        fmt::print("  {}{}: mean {:.5g}", r.states().size() > 1 ? r.states()[s].name + ", " : "", r.bands()[b],
+                   sensor_mean(sensor, sensor.reading.irradiance, s, b, bands));
+        if (!sensor.reading.back.empty()) fmt::print(", back {:.5g}", sensor_mean(sensor, sensor.reading.back, s, b, bands));
+        fmt::print(" {}\n", r.band_units()[b]);
+      }
+  }
+}
+
 Json json_of(const Result& r) {
   const auto& header = r.header();
   Json json{{"file", r.file()},
@@ -53,6 +99,7 @@ Json json_of(const Result& r) {
     }
     json["states"].push_back(row);
   }
+  add_devices(r, json);
   json["facets"] = r.facet_count();
   json["organs"] = r.organ_count();
   for (const auto& name : datasets())
@@ -97,6 +144,7 @@ void print_result_info(const std::string& file, bool json) {
              header.scene_file.empty() ? "made in memory" : header.scene_file, header.method, header.status, header.software_version);
   for (std::size_t b = 0; b < r.bands().size(); ++b) fmt::print("{:<11}{} in {}\n", b == 0 ? "bands" : "", r.bands()[b], r.band_units()[b]);
   print_states(r);
+  print_devices(r);
   fmt::print("facets     {}\norgans     {}\n", r.facet_count() > 0 ? std::to_string(r.facet_count()) : "not kept", r.organ_count());
   for (const auto& name : datasets())
     if (r.has(name)) fmt::print("  {:<20} {}\n", name, shape_text(r.shape(name)));

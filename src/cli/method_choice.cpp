@@ -77,6 +77,8 @@ MethodChoice choose_method(const std::optional<std::string>& method, const std::
 }
 
 MethodReason default_method(const Scene& scene, Quality quality, Progress& progress) {
+  if (!scene.lamps.empty()) return {"clustering", "instantiation knows no lamps"};
+  if (!scene.sensors.empty()) return {"clustering", "instantiation knows no sensors"};
   if (!repeats(scene)) return {"clustering", "too little repeats for instantiation to pay"};
   InstantiationSettings settings;
   settings.density = instantiation_density(quality);

@@ -83,6 +83,26 @@ void add_light(const Scene& scene, std::vector<PlanItem>& items) {
       scene, "sky", [](const LightState& s) { return s.sky.has_value(); }, "sky light through the gaps, direction by direction"));
 }
 
+/// Lamps and sensors: what a scene without them does not pay for.
+void add_devices(const Scene& scene, const std::string& method, std::vector<PlanItem>& items) {
+  const bool direct_only = method == "direct";
+  if (scene.lamps.empty()) {
+    items.push_back({"lamps", false, "the scene has none: no shadow rays to lamps, no tree of rays for them"});
+  } else {
+    std::size_t copies = 0;
+    for (const auto& lamp : scene.lamps) copies += lamp.placements.size();
+    items.push_back({"lamps", true, fmt::format("{}: shadow rays from every cell of the scene to points of lamps", counted(copies, "lamp", "lamps"))});
+  }
+  if (scene.sensors.empty())
+    items.push_back({"sensors", false, "the scene has none"});
+  else
+    items.push_back({"sensors", true,
+                     fmt::format("{}: rays {}, after the solve", counted(scene.sensors.size(), "sensor", "sensors"),
+                                 direct_only              ? "to sun, sky and lamps"
+                                 : method == "reference" ? "followed as paths"
+                                                         : "that gather the light of what they meet")});
+}
+
 void add_geometry(const Scene& scene, const SceneCounts& counts, std::vector<PlanItem>& items) {
   if (scene.periodic)
     items.push_back({"periodicity", true,
@@ -183,6 +203,8 @@ void add_radiosity(const Scene& scene, const MethodChoice& choice, Progress& pro
   const auto predicted = plan_radiosity(scene, facets, settings, progress);
   static const std::vector<std::pair<std::string, std::string>> names{{"elements", "elements and cells"},
                                                                       {"direct", "direct light on every cell"},
+                                                                      {"tree of rays", "tree of rays, for lamps and sensors"},
+                                                                      {"lamps", "light of lamps on every cell"},
                                                                       {"links", "links and clusters"},
                                                                       {"fields", "light on elements, iteration"},
                                                                       {"lines", "lines, until they are links"}};
@@ -212,6 +234,7 @@ Plan make_plan(const Scene& scene, const MethodChoice& choice, Progress& progres
   plan.choice = choice;
   plan.counts = count(scene);
   add_light(scene, plan.items);
+  add_devices(scene, choice.method, plan.items);
   add_geometry(scene, plan.counts, plan.items);
   add_scattering(scene, choice.method, plan.items);
   add_certificate(scene, choice.method, plan.items);

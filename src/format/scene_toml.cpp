@@ -29,22 +29,21 @@ TomlSchema scene_schema(const std::vector<std::string>& bands) {
   const TomlSchema per_band = bands.empty() ? TomlSchema::names(TomlSchema::leaf()) : TomlSchema::of(bands);
   const TomlSchema state = TomlSchema::of(
       {"name", "duration_s"}, {{"sun", sun_schema(per_band)}, {"sky", sky_schema(per_band)}, {"global", global_schema(per_band)}});
-  return TomlSchema::of({"bands"},
-                        {{"units", per_band},
-                         {"domain", TomlSchema::of({"periodic"})},
-                         {"sun", sun_schema(per_band)},
-                         {"sky", sky_schema(per_band)},
-                         {"global", global_schema(per_band)},
-                         {"state", state},
-                         {"lamp", TomlSchema::of({"name", "mesh", "unit", "place"}, {{"exitance", per_band}})},
-                         {"optics", TomlSchema::names(optics_schema(per_band))},
-                         {"ground", ground_schema(per_band)},
-                         {"plant", plant_schema()},
-                         {"group", group_schema()},
-                         {"place", placement_schema({"plant", "group"})},
-                         {"sensor", TomlSchema::of({"name", "mesh", "unit"}, {{"grid", TomlSchema::of({"z", "cells", "size", "center"})}})},
-                         {"output", output_schema()},
-                         {"solve", solve_schema()}});
+  return TomlSchema::of({"bands"}, {{"units", per_band},
+                                    {"domain", TomlSchema::of({"periodic"})},
+                                    {"sun", sun_schema(per_band)},
+                                    {"sky", sky_schema(per_band)},
+                                    {"global", global_schema(per_band)},
+                                    {"state", state},
+                                    {"lamp", lamp_schema(per_band)},
+                                    {"optics", TomlSchema::names(optics_schema(per_band))},
+                                    {"ground", ground_schema(per_band)},
+                                    {"plant", plant_schema()},
+                                    {"group", group_schema()},
+                                    {"place", placement_schema({"plant", "group"})},
+                                    {"sensor", sensor_schema()},
+                                    {"output", output_schema()},
+                                    {"solve", solve_schema()}});
 }
 
 void read_bands(const TomlValue& root, Scene& scene) {
@@ -81,14 +80,6 @@ void read_domain(const TomlValue& root, Scene& scene) {
   scene.periodic = PeriodicCell{v[0], v[1], v[2], v[3]};
 }
 
-void refuse_later_parts(const TomlValue& root) {
-  for (const char* name : {"lamp", "sensor"})
-    if (const auto value = root.get(name)) {
-      const auto all = value->tables();
-      if (!all.empty()) throw InputError(all.front().where() + fmt::format(": not supported by this version: leave [[{}]] out", name));
-    }
-}
-
 }  // namespace
 
 std::vector<double> read_per_band(const TomlValue& table, const Scene& scene, const std::function<double(const TomlValue&)>& read) {
@@ -111,7 +102,6 @@ Scene read_scene(const std::string& file) {
   const TomlDocument document(file);
   const TomlValue root = document.root();
   document.check_keys(scene_schema(band_names_if_any(root)));
-  refuse_later_parts(root);
   Scene scene;
   scene.file = file;
   scene.text = document.text();
@@ -123,6 +113,8 @@ Scene read_scene(const std::string& file) {
   read_optics(root, scene);
   read_ground(root, scene);
   read_plants_and_groups(root, scene);
+  read_lamps(root, scene);
+  read_sensors(root, scene);
   check_scene(scene);
   return scene;
 }

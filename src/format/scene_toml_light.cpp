@@ -171,8 +171,8 @@ TomlSchema global_schema(const TomlSchema& per_band) {
 void read_light(const TomlValue& root, Scene& scene) {
   const auto states = root.get("state");
   if (!states) {
-    if (!root.has("sun") && !root.has("sky") && !root.has("global"))
-      throw InputError(location(scene.file), "no light", "[sun], [sky], or any number of [[state]]");
+    if (!root.has("sun") && !root.has("sky") && !root.has("global") && !root.has("lamp"))
+      throw InputError(location(scene.file), "no light", "[sun], [sky], [[lamp]], or any number of [[state]]");
     scene.states.push_back(read_state(root, scene));
     return;
   }
@@ -181,7 +181,7 @@ void read_light(const TomlValue& root, Scene& scene) {
       value->fail(fmt::format("[{}] beside [[state]]", name), "one of them: each [[state]] has its own light");
   std::set<std::string> seen;
   for (const auto& table : states->tables()) {
-    if (!table.has("sun") && !table.has("sky") && !table.has("global")) table.fail("no light", "`sun`, `sky` or both");
+    if (!table.has("sun") && !table.has("sky") && !table.has("global") && !root.has("lamp")) table.fail("no light", "`sun`, `sky` or both");
     LightState state = read_state(table, scene);
     const auto name = table.get("name");
     state.name = name ? name->text() : fmt::format("state {}", scene.states.size() + 1);

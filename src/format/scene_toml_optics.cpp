@@ -22,20 +22,6 @@ std::vector<float> floats(const std::vector<double>& values) {
   return {values.begin(), values.end()};
 }
 
-/// All faces of a mesh file as one mesh, in their order.
-Mesh read_flat_mesh(const std::string& file, double unit_m) {
-  const Plant plant = read_plant(file, unit_m);
-  check_plant(plant);
-  Mesh mesh;
-  for (const auto& shape : plant.shapes)
-    for (std::uint32_t t = 0; t < shape.triangle_count; ++t) {
-      const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-      for (const auto& corner : shape_triangle(plant, shape, t)) mesh.vertices.push_back(corner);
-      mesh.triangles.push_back({first, first + 1, first + 2});
-    }
-  return mesh;
-}
-
 void read_ground_plane(const TomlValue& table, const Scene& scene, Ground& ground) {
   if (const auto size = table.get("size")) {
     const auto v = size->numbers(2, "width along x, depth along y [m]");
@@ -62,6 +48,19 @@ void read_ground_plane(const TomlValue& table, const Scene& scene, Ground& groun
 }
 
 }  // namespace
+
+Mesh read_flat_mesh(const std::string& file, double unit_m) {
+  const Plant plant = read_plant(file, unit_m);
+  check_plant(plant);
+  Mesh mesh;
+  for (const auto& shape : plant.shapes)
+    for (std::uint32_t t = 0; t < shape.triangle_count; ++t) {
+      const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+      for (const auto& corner : shape_triangle(plant, shape, t)) mesh.vertices.push_back(corner);
+      mesh.triangles.push_back({first, first + 1, first + 2});
+    }
+  return mesh;
+}
 
 TomlSchema optics_schema(const TomlSchema& per_band) {
   return TomlSchema::of(

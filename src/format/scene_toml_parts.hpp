@@ -30,6 +30,8 @@ TomlSchema optics_schema(const TomlSchema& per_band);
 TomlSchema ground_schema(const TomlSchema& per_band);
 void read_optics(const TomlValue& root, Scene& scene);
 void read_ground(const TomlValue& root, Scene& scene);
+/// All faces of a mesh file as one mesh, in their order.
+Mesh read_flat_mesh(const std::string& file, double unit_m);
 
 // scene_toml_placements.cpp
 /// Keys of one placement: position, turn, scale, tilt, tilt_azimuth, mirror, grid, file.
@@ -46,6 +48,13 @@ TomlSchema group_schema();
 void read_plants_and_groups(const TomlValue& root, Scene& scene);
 /// Metres per unit: m, cm, mm, inch, foot.
 double read_unit(const TomlValue& owner);
+
+// scene_toml_devices.cpp
+TomlSchema lamp_schema(const TomlSchema& per_band);
+TomlSchema sensor_schema();
+/// [[lamp]] -> Scene::lamps and [[sensor]] -> Scene::sensors, when the states are known.
+void read_lamps(const TomlValue& root, Scene& scene);
+void read_sensors(const TomlValue& root, Scene& scene);
 
 // scene_toml_choices.cpp
 TomlSchema output_schema();

@@ -4,9 +4,12 @@
 #include <cmath>
 #include <optional>
 
+#include <sunfleck/radiosity/sensor_gather.hpp>
+
 #include "cluster_tree.hpp"
 #include "direct_light.hpp"
 #include <sunfleck/radiosity/elements.hpp>
+#include "lamp_cells.hpp"
 #include "line_links.hpp"
 #include "transport.hpp"
 
@@ -52,12 +55,14 @@ class Planner {
     plan_.cells = elements_.surface.cells();
     plan_.memory.emplace_back("elements", elements_.bytes());
     direct();
+    devices();
     if (settings_.method != RadiosityMethod::direct && anything_scatters(facets_)) scattering();
     return std::move(plan_);
   }
 
  private:
   static constexpr std::uint64_t word = sizeof(float);
+  static constexpr std::uint64_t bytes_of_ray_facet = 300;  ///< about what Embree's tree and its copy of a triangle take
 
   void direct() {
     const auto sources = light_sources(scene_.states);
@@ -77,6 +82,19 @@ class Planner {
     }
     sun_ = !sources.suns.empty();
     plan_.memory.emplace_back("direct", values * word);
+  }
+
+  /// Lamps and sensors, and the tree of rays that they share.
+  void devices() {
+    if (scene_.lamps.empty() && scene_.sensors.empty()) return;
+    plan_.memory.emplace_back("tree of rays", facets_.size() * bytes_of_ray_facet);
+    if (!scene_.lamps.empty()) {
+      lamps_ = true;
+      plan_.lamp_rays = lamp_rays(elements_, settings_.density);
+      plan_.memory.emplace_back("lamps", place_lamps(scene_).sets.size() * 2 * plan_.cells * facets_.bands * word);
+    }
+    if (!scene_.sensors.empty())
+      plan_.sensor_rays = sensor_rays(scene_, facets_.bounds, {sensor_samples(settings_.density), settings_.seed, true});
   }
 
   Pilot pilot(const ClusterTree* tree, std::uint32_t directions) const {
@@ -113,7 +131,7 @@ class Planner {
     // of each half: starts of the rows of near links, lines and how many of them are open; far lines of sides and nodes; the sun's first
     // reflection
     const std::uint64_t half =
-        4 * sides * word + (tree ? sides * channels + 2 * slots * word + plan_.clusters * word : 0) + (sun_ ? sides * columns_ * word : 0);
+        4 * sides * word + (tree ? sides * channels + 2 * slots * word + plan_.clusters * word : 0) + (sun_ || lamps_ ? sides * columns_ * word : 0);
     plan_.memory.emplace_back("links", 2 * half + whole(near * sizeof(std::uint32_t) + far * sizeof(FarField::Link)) +
                                            plan_.elements * word + (tree ? tree->bytes() : 0));
     // 7 fields of the solver, 3 and a basis of the iteration; how far the basis grows, the optics alone do not tell
@@ -125,7 +143,7 @@ class Planner {
     const double in_batch = std::min(directions, line_batch(plan_.elements, settings_.density)) / directions;
     plan_.memory.emplace_back(
         "lines", whole(more.near_pairs * times * bytes_of_pair + more.fragments * times * in_batch * bytes_of_meeting) +
-                     (sun_ ? 2 * plan_.cells * columns_ * word : 0) + (skies_ > 0 ? 2 * (3 + 2 * skies_) * plan_.cells * word : 0));
+                     (sun_ || lamps_ ? 2 * plan_.cells * columns_ * word : 0) + (skies_ > 0 ? 2 * (3 + 2 * skies_) * plan_.cells * word : 0));
   }
 
   const Scene& scene_;
@@ -134,7 +152,7 @@ class Planner {
   Progress& progress_;
   const std::size_t columns_;
   const Elements elements_;
-  bool sun_ = false;
+  bool sun_ = false, lamps_ = false;
   std::size_t skies_ = 0;
   RadiosityPlan plan_;
 };

@@ -10,9 +10,12 @@
 
 #include <sunfleck/core/error.hpp>
 #include <sunfleck/core/memory.hpp>
+#include <sunfleck/radiosity/sensor_gather.hpp>
+#include <sunfleck/visibility/endless_light.hpp>
 
 #include "direct_light.hpp"
 #include "gmres.hpp"
+#include "lamp_cells.hpp"
 #include "transport.hpp"
 
 namespace sunfleck {
@@ -31,16 +34,25 @@ class RadiositySolver {
         progress_(progress),
         states_(scene.states.size()),
         bands_(facets.bands),
-        columns_(states_ * bands_) {}
+        columns_(states_ * bands_),
+        lamps_(scene) {}
 
   SolveReport run() {
-    if (facets_.zero_area_facets == facets_.size())
+    if (facets_.zero_area_facets == facets_.size() && scene_.sensors.empty())
       throw InputError(location(scene_.file), "no facet with an area", "at least one that light can meet");
     report_.method = settings_.method == RadiosityMethod::direct ? "direct"
                      : settings_.method == RadiosityMethod::flat ? "flat"
                                                                  : "clustering";
     const bool scatter = settings_.method != RadiosityMethod::direct && anything_scatters(facets_);
+    report_.balance.assign(states_, std::vector<Balance>(bands_));
     Stopwatch watch;
+    if (!scene_.lamps.empty() || !scene_.sensors.empty()) trace_rays();
+    if (facets_.bounds.empty()) {  // sensors in an empty scene
+      write_nothing();
+      sensors();
+      return std::move(report_);
+    }
+    watch = {};
     elements_ = make_elements(scene_, facets_, settings_);
     timed("elements", watch);
     report_.counts.emplace_back("elements", elements_.size());
@@ -48,7 +60,8 @@ class RadiositySolver {
     report_.memory.emplace_back("elements", elements_.bytes());
     direct_ = direct_light(scene_, facets_, elements_, settings_, report_.timings, progress_);
     report_.counts.emplace_back("direct_fragments", direct_.fragments);
-    report_.balance.assign(states_, std::vector<Balance>(bands_));
+    if (!lamps_.empty() && scatter) check_lamplight_ends(scene_, *rays_);
+    if (!lamps_.empty()) lamps();
     if (scatter)
       solve_scattering();
     else {
@@ -58,6 +71,7 @@ class RadiositySolver {
     watch = {};
     write_rows();
     timed("rows", watch);
+    if (!scene_.sensors.empty()) sensors();
     return std::move(report_);
   }
 
@@ -71,6 +85,51 @@ class RadiositySolver {
   }
 
   void timed(const char* phase, const Stopwatch& watch) { add_seconds(report_.timings, phase, watch.seconds()); }
+
+  /// The tree of rays that lamps and sensors need, and nothing else does.
+  void trace_rays() {
+    const Stopwatch watch;
+    rays_.emplace(facets_);
+    world_.emplace(facets_, *rays_, [this](std::uint32_t facet, bool front, double u, double v, float* values) {
+      radiosity_at(facet, front, u, v, values);
+    });
+    report_.memory.emplace_back("tree of rays", rays_->bytes());
+    timed("tree of rays", watch);
+  }
+
+  void lamps() {
+    const Stopwatch watch;
+    lamp_ = lamp_irradiance(lamps_, facets_, elements_, settings_, *world_, progress_);
+    report_.counts.emplace_back("lamp_rays", lamp_.rays);
+    report_.memory.emplace_back("lamps", lamp_.bytes());
+    timed("lamps", watch);
+  }
+
+  void sensors() {
+    const Stopwatch watch;
+    const SensorSettings settings{sensor_samples(settings_.density), settings_.seed,
+                                  settings_.method != RadiosityMethod::direct && !facets_.bounds.empty()};
+    report_.counts.emplace_back("sensor_rays", sensor_rays(scene_, facets_.bounds, settings));
+    report_.sensors = read_sensors(scene_, place_sensors(scene_, facets_.bounds), lamps_, *world_, settings, progress_);
+    timed("sensors", watch);
+  }
+
+  /// Radiosity of a side at a point of a facet, all columns.
+  void radiosity_at(std::uint32_t facet, bool front, double u, double v, float* values) const {
+    const std::size_t t = row_of_facet_[facet];
+    const auto& s = elements_.surface;
+    const auto& m = facets_.materials[facets_.optics[facet]];
+    const std::uint32_t cell = s.first_cell[t] + cell_of(static_cast<float>(u), static_cast<float>(v), s.split[t]);
+    for (std::size_t column = 0; column < columns_; ++column) {
+      const std::size_t state = column / bands_, band = column % bands_;
+      float light[2];
+      for (std::size_t side = 0; side < 2; ++side)
+        light[side] = sky_irradiance(2 * cell + side, state, band) + sun_irradiance(t, 2 * cell + side, state, band) +
+                      lamp_.at(2 * cell + side, state, band, bands_) + scattered_irradiance(cell, side, column);
+      const float here = front ? light[0] : light[1], other = front ? light[1] : light[0];
+      values[column] = (front ? m.reflectance_front : m.reflectance_back)[band] * here + m.transmittance[band] * other;
+    }
+  }
 
   /// Irradiance of the sky, and of the sun, on a side of a cell of row t, for a state and band [W m^-2].
   float sky_irradiance(std::size_t cell_side, std::size_t state, std::size_t band) const {
@@ -167,10 +226,10 @@ class RadiositySolver {
     for (std::size_t column = 0; column < columns_; ++column) source[column] = static_cast<float>(sum[column] / open);
   }
 
-  /// Sunlight after reflection and transmission on each cell.
+  /// Light of sun and lamps after reflection and transmission on each cell.
   SunReflection sun_reflection() const {
     SunReflection out;
-    if (direct_.sunlit.empty()) return out;
+    if (direct_.sunlit.empty() && lamp_.empty()) return out;
     const auto& s = elements_.surface;
     out.columns = columns_;
     out.exitance.assign(2 * s.cells() * columns_, 0.0f);
@@ -180,7 +239,8 @@ class RadiositySolver {
         const auto& m = facets_.materials[facets_.optics[elements_.order[t]]];
         for (std::size_t column = 0; column < columns_; ++column) {
           const std::size_t state = column / bands_, band = column % bands_;
-          const float front = sun_irradiance(t, 2 * c, state, band), back = sun_irradiance(t, 2 * c + 1, state, band);
+          const float front = sun_irradiance(t, 2 * c, state, band) + lamp_.at(2 * c, state, band, bands_),
+                      back = sun_irradiance(t, 2 * c + 1, state, band) + lamp_.at(2 * c + 1, state, band, bands_);
           out.exitance[2 * c * columns_ + column] = m.reflectance_front[band] * front + m.transmittance[band] * back;
           out.exitance[(2 * c + 1) * columns_ + column] = m.reflectance_back[band] * back + m.transmittance[band] * front;
         }
@@ -330,8 +390,8 @@ class RadiositySolver {
   void write_rows() {
     const auto& s = elements_.surface;
     const std::size_t n = facets_.size();
-    std::vector<std::uint32_t> row_of_facet(n);
-    for (std::size_t t = 0; t < n; ++t) row_of_facet[elements_.order[t]] = static_cast<std::uint32_t>(t);
+    row_of_facet_.resize(n);
+    for (std::size_t t = 0; t < n; ++t) row_of_facet_[elements_.order[t]] = static_cast<std::uint32_t>(t);
     const bool any_sun = !direct_.sunlit.empty();
     constexpr std::size_t chunk = 16384;
     std::vector<float> irradiance, sunlit;
@@ -345,7 +405,7 @@ class RadiositySolver {
       tbb::parallel_for(std::size_t{0}, blocks_in_chunk, [&](std::size_t b) {
         std::fill(partial[b].begin(), partial[b].end(), Balance{});
         for (std::size_t i = b * block, end = std::min(count, (b + 1) * block); i < end; ++i) {
-          const std::size_t t = row_of_facet[first + i];
+          const std::size_t t = row_of_facet_[first + i];
           if (s.split[t] == 0) continue;
           facet_row(t, first + i, i, count, irradiance, sunlit, partial[b]);
         }
@@ -362,6 +422,12 @@ class RadiositySolver {
     if (settings_.method == RadiosityMethod::direct)  // what is not absorbed is not followed: it counts as scattered out of the scene
       for (auto& state : report_.balance)
         for (auto& b : state) b.escaped = b.incident - b.leaves - b.ground;
+  }
+
+  /// Rows of facets without area.
+  void write_nothing() {
+    const std::vector<float> zeros(states_ * facets_.size() * 2 * bands_, 0.0f);
+    if (facets_.size() > 0) sink_.rows({0, facets_.size(), zeros.data(), nullptr, nullptr});
   }
 
   float scattered_irradiance(std::uint32_t cell, std::size_t side, std::size_t column) const {
@@ -387,7 +453,8 @@ class RadiositySolver {
         for (std::size_t side = 0; side < 2; ++side) {
           float direct = 0.0f, scattered = 0.0f;
           for (std::uint32_t c = begin; c < end; ++c) {
-            direct += share * (sky_irradiance(2 * c + side, state, band) + sun_irradiance(t, 2 * c + side, state, band));
+            direct += share * (sky_irradiance(2 * c + side, state, band) + sun_irradiance(t, 2 * c + side, state, band) +
+                               lamp_.at(2 * c + side, state, band, bands_));
             scattered += share * scattered_irradiance(c, side, column);
           }
           const float e = direct + scattered;
@@ -414,6 +481,11 @@ class RadiositySolver {
   const std::size_t states_, bands_, columns_;
   Elements elements_;
   DirectLight direct_;
+  const LampLight lamps_;
+  std::optional<RayScene> rays_;
+  std::optional<FacetSurroundings> world_;
+  LampIrradiance lamp_;
+  std::vector<std::uint32_t> row_of_facet_;
   Field source_[2], gathered_;                               ///< source_: of each half
   std::vector<float> part_rest_[2], mean_rest_, part_area_;  ///< mean_rest_: area mean over the part's cells, from both halves
   std::vector<std::uint32_t> enclosed_part_;

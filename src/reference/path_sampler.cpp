@@ -5,8 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include <sunfleck/core/sampling.hpp>
+
+#include "lamp_paths.hpp"
 
 namespace sunfleck {
 
@@ -20,6 +23,14 @@ Vec3 cosine_direction(const Vec3& n, double u, double v) {
   orthonormal_frame(n, a, b);
   const double r = std::sqrt(u), azimuth = 2.0 * pi * v;
   return r * std::cos(azimuth) * a + r * std::sin(azimuth) * b + std::sqrt(1.0 - u) * n;
+}
+
+/// Above the rounding of rays.
+double clearance_of(const RayScene& rays) {
+  const Vec3 size = rays.bounds().size();
+  double largest = std::max({size.x, size.y, size.z});
+  if (const auto& cell = rays.periodic()) largest = std::max({largest, cell->width(), cell->depth()});
+  return 4e-6 * largest;
 }
 
 }  // namespace
@@ -74,20 +85,27 @@ struct PathSampler::Impl {
   template <class Hit>
   void sun_at(const Vec3& p, CopyFacet facet, const Vec3& n, double u, double v, std::uint64_t& count, Hit&& hit) const;
 
-  /// Follows a ray through the scene. hit(bounce, facet, point, normal, front) at every facet met, before it scatters; exit(bounce,
-  /// direction) if it leaves. `weight` [b] begins at 1.
-  template <class Hit, class Exit>
-  void walk(Vec3 p, Vec3 d, CopyFacet facet, double* weight, RandomStream& random, std::uint64_t& count, Hit&& hit, Exit&& exit) const;
+  /// The same for one point of a lamp: hit(state, on_front, factor, strength [b]) for each state in which that lamp shines, if it reaches
+  /// the point. `lift`: how far above the side the ray starts.
+  template <class Hit>
+  void lamps_at(const Vec3& p, CopyFacet facet, const Vec3& n, double lift, const double* x, std::uint64_t& count, Hit&& hit) const;
 
-  void one_side(const Vec3& p, const Vec3& d, CopyFacet facet, RandomStream& random, double* weight, double* sum, double* direct,
-                std::uint64_t& count) const;
+  /// Follows a ray through the scene. way(bounce, point, normal there, direction, distance) for every piece of the path, the last one
+  /// infinite; hit(bounce, facet, point, normal, front) at every facet met, before it scatters; exit(bounce, direction) if it leaves.
+  /// `weight` [b] begins at 1. `n`: the normal where it starts.
+  template <class Way, class Hit, class Exit>
+  void walk(Vec3 p, Vec3 n, Vec3 d, CopyFacet facet, double* weight, RandomStream& random, std::uint64_t& count, Way&& way, Hit&& hit,
+            Exit&& exit) const;
+
+  void one_side(const Vec3& p, const Vec3& n, const Vec3& d, CopyFacet facet, RandomStream& random, double* weight, double* sum,
+                double* direct, std::uint64_t& count) const;
 
   double absorptance(CopyFacet facet, bool on_front, std::size_t b) const {
     const auto m = material(facet) + b;
     return std::max(0.0, 1.0 - (on_front ? front : back)[m] - through[m]);
   }
   /// Light by paths, which leave out the sun on the start itself; and that sun. Both add to sums over `count` samples.
-  void add_paths(const SampleTarget& target, std::uint64_t stream, std::uint32_t count, SampleMeans& sums) const;
+  void add_paths(const SampleTarget& target, std::uint64_t stream, std::uint32_t count, std::uint32_t lamp_points, SampleMeans& sums) const;
   void add_sun(const SampleTarget& target, std::uint64_t stream, std::uint32_t count, double share, SampleMeans& sums) const;
 
   struct Particles {
@@ -98,15 +116,17 @@ struct PathSampler::Impl {
 
   const RayScene& rays;
   std::uint64_t seed;
+  double clearance;  ///< of points on lamps from what stands there [m]
   std::size_t states, bands;
   bool has_sun = false;
+  std::unique_ptr<const LampPaths> lamps;    ///< null = none
   std::vector<Beam> beams;                   ///< [s]
   std::vector<const Sky*> skies;             ///< [s], null = none
   std::vector<double> front, back, through;  ///< [material][b]
 };
 
 PathSampler::Impl::Impl(const Scene& scene, const RayScene& r, std::uint64_t s)
-    : rays(r), seed(s), states(scene.states.size()), bands(scene.band_count()) {
+    : rays(r), seed(s), clearance(clearance_of(r)), states(scene.states.size()), bands(scene.band_count()) {
   for (const auto& state : scene.states) {
     Beam beam;
     if (state.sun) {
@@ -118,6 +138,7 @@ PathSampler::Impl::Impl(const Scene& scene, const RayScene& r, std::uint64_t s)
     beams.push_back(beam);
     skies.push_back(state.sky ? &*state.sky : nullptr);
   }
+  if (!scene.lamps.empty()) lamps = std::make_unique<const LampPaths>(scene);
   for (const auto& m : rays.materials())
     for (std::size_t b = 0; b < bands; ++b) {
       front.push_back(m.reflectance_front[b]);
@@ -147,17 +168,32 @@ void PathSampler::Impl::sun_at(const Vec3& p, CopyFacet facet, const Vec3& n, do
   }
 }
 
-template <class Hit, class Exit>
-void PathSampler::Impl::walk(Vec3 p, Vec3 d, CopyFacet facet, double* weight, RandomStream& random, std::uint64_t& count, Hit&& hit,
-                             Exit&& exit) const {
+template <class Hit>
+void PathSampler::Impl::lamps_at(const Vec3& p, CopyFacet facet, const Vec3& n, double lift, const double* x, std::uint64_t& count,
+                                 Hit&& hit) const {
+  const auto draw = lamps->draw(p, n, x);
+  if (!(draw.factor > 0.0)) return;
+  ++count;
+  const double range = draw.distance - clearance;
+  if (range > 0.0 && rays.occluded(p + (draw.on_front ? lift : -lift) * n, draw.direction, facet, range)) return;
+  const auto& placed = lamps->lamps();
+  for (std::size_t s = 0; s < states; ++s)
+    if (const auto set = placed.set_of_state[s]; set != Lamps::none && placed.shines(set, draw.unit))
+      hit(s, draw.on_front, draw.factor, lamps->strength(draw.unit));
+}
+
+template <class Way, class Hit, class Exit>
+void PathSampler::Impl::walk(Vec3 p, Vec3 n, Vec3 d, CopyFacet facet, double* weight, RandomStream& random, std::uint64_t& count,
+                             Way&& way, Hit&& hit, Exit&& exit) const {
   for (int bounce = 0;; ++bounce) {
     ++count;
     const RayHit met = rays.first_hit(p, d, facet);
+    way(bounce, p, n, d, met.distance);
     if (!met) return exit(bounce, d);
     facet = met.where();
     const FacetPlane here = plane(facet);
     p = here.point(met.u, met.v);
-    Vec3 n = here.normal;
+    n = here.normal;
     hit(bounce, facet, p, n, met.front);
 
     const auto m = material(facet);
@@ -181,15 +217,38 @@ void PathSampler::Impl::walk(Vec3 p, Vec3 d, CopyFacet facet, double* weight, Ra
   }
 }
 
-void PathSampler::Impl::one_side(const Vec3& start, const Vec3& direction, CopyFacet facet, RandomStream& random, double* weight,
-                                 double* sum, double* direct, std::uint64_t& count) const {
+void PathSampler::Impl::one_side(const Vec3& start, const Vec3& start_normal, const Vec3& direction, CopyFacet facet,
+                                 RandomStream& random, double* weight, double* sum, double* direct, std::uint64_t& count) const {
   std::fill_n(weight, bands, 1.0);
   walk(
-      start, direction, facet, weight, random, count,
+      start, start_normal, direction, facet, weight, random, count,
+      [&](int bounce, const Vec3& p, const Vec3& n, const Vec3& d, double distance) {
+        if (!lamps) return;
+        lamps->cross(p, n, d, distance + clearance, count, [&](std::uint32_t unit, double part) {
+          const auto& placed = lamps->lamps();
+          const auto& strength = lamps->strength(unit);
+          for (std::size_t s = 0; s < states; ++s) {
+            if (const auto set = placed.set_of_state[s]; set == Lamps::none || !placed.shines(set, unit)) continue;
+            for (std::size_t b = 0; b < bands; ++b) {
+              const double light = weight[b] * part * strength[b];
+              sum[2 * s * bands + b] += light;
+              if (bounce == 0) direct[2 * s * bands + b] += light;
+            }
+          }
+        });
+      },
       [&](int, CopyFacet f, const Vec3& p, const Vec3& n, bool on_front) {
+        const auto m = material(f);
+        if (lamps) {
+          double x[6];
+          for (auto& value : x) value = random.next();
+          lamps_at(p, f, n, 0.0, x, count, [&](std::size_t s, bool lamp_on_front, double factor, const std::vector<double>& strength) {
+            const double* scatter = (lamp_on_front != on_front ? through.data() : on_front ? front.data() : back.data()) + m;
+            for (std::size_t b = 0; b < bands; ++b) sum[2 * s * bands + b] += weight[b] * scatter[b] * factor * strength[b];
+          });
+        }
         if (!has_sun) return;
         const double u = random.next(), v = random.next();
-        const auto m = material(f);
         sun_at(p, f, n, u, v, count, [&](std::size_t s, bool sun_on_front, double factor) {
           const double* scatter = (sun_on_front != on_front ? through.data() : on_front ? front.data() : back.data()) + m;
           for (std::size_t b = 0; b < bands; ++b) sum[2 * s * bands + b] += weight[b] * scatter[b] * factor * beams[s].sun->irradiance[b];
@@ -221,7 +280,8 @@ bool PathSampler::has_sun() const {
   return impl_->has_sun;
 }
 
-void PathSampler::Impl::add_paths(const SampleTarget& target, std::uint64_t stream, std::uint32_t count, SampleMeans& sums) const {
+void PathSampler::Impl::add_paths(const SampleTarget& target, std::uint64_t stream, std::uint32_t count, std::uint32_t lamp_points,
+                                  SampleMeans& sums) const {
   std::vector<double> here(states * 2 * bands), weight(bands);
   const auto scramble = static_cast<std::uint32_t>(stream);
   for (std::uint32_t i = 0; i < count; ++i) {
@@ -232,10 +292,26 @@ void PathSampler::Impl::add_paths(const SampleTarget& target, std::uint64_t stre
     const Vec3 p = start.point(root * (1.0 - y), root * y), n = start.normal;
     RandomStream random(mix(stream, i));
     std::fill(here.begin(), here.end(), 0.0);
-    one_side(p, cosine_direction(n, sobol_owen(i, 2, scramble), sobol_owen(i, 3, scramble)), facet, random, weight.data(), here.data(),
+    one_side(p, n, cosine_direction(n, sobol_owen(i, 2, scramble), sobol_owen(i, 3, scramble)), facet, random, weight.data(), here.data(),
              sums.direct.data(), sums.rays);
-    one_side(p, cosine_direction(-n, sobol_owen(i, 4, scramble), sobol_owen(i, 5, scramble)), facet, random, weight.data(),
+    one_side(p, n, cosine_direction(-n, sobol_owen(i, 4, scramble), sobol_owen(i, 5, scramble)), facet, random, weight.data(),
              here.data() + bands, sums.direct.data() + bands, sums.rays);
+    if (lamps) {
+      const auto lamp_scramble = static_cast<std::uint32_t>(mix(stream, 0x6c616d70ULL));
+      for (std::uint32_t j = 0; j < lamp_points; ++j) {
+        double numbers[6];
+        for (unsigned k = 0; k < 6; ++k) numbers[k] = sobol_owen(i * lamp_points + j, k, lamp_scramble);
+        lamps_at(p, facet, n, 0.0, numbers, sums.rays,
+                 [&](std::size_t s, bool on_front, double factor, const std::vector<double>& strength) {
+                   const std::size_t side = 2 * s + (on_front ? 0 : 1);
+                   for (std::size_t b = 0; b < bands; ++b) {
+                     const double light = factor * strength[b] / lamp_points;
+                     here[side * bands + b] += light;
+                     sums.direct[side * bands + b] += light;
+                   }
+                 });
+      }
+    }
     for (std::size_t k = 0; k < here.size(); ++k) {
       sums.irradiance[k] += here[k];
       sums.absorbed[k / (2 * bands) * bands + k % bands] += absorptance(facet, k / bands % 2 == 0, k % bands) * here[k];
@@ -275,10 +351,48 @@ void PathSampler::sample(const SampleTarget& target, std::uint32_t randomisation
   means.rays = 0;
   if (!(target.area() > 0.0) || count == 0) return;
   const std::uint64_t stream = mix(my.seed, target.key(), randomisation);
-  my.add_paths(target, stream, count, means);
+  my.add_paths(target, stream, count, sun_points, means);
   if (my.has_sun) my.add_sun(target, stream, count * sun_points, 1.0 / sun_points, means);
   for (auto* sums : {&means.irradiance, &means.direct, &means.absorbed, &means.sunlit})
     for (auto& value : *sums) value /= count;
+}
+
+void PathSampler::sample_patch(const Patch& patch, bool both, double lift, std::uint64_t key, std::uint32_t count, double* sums,
+                               std::uint64_t& rays) const {
+  const Impl& my = *impl_;
+  const Vec3 n = patch.normal();
+  if (n == Vec3{0.0}) return;
+  const std::size_t bands = my.bands, sides = both ? 2 : 1;
+  const std::uint64_t stream = mix(my.seed, 0x7061746368ULL, key);
+  const auto scramble = static_cast<std::uint32_t>(stream), lights = static_cast<std::uint32_t>(mix(stream, 1));
+  std::vector<double> here(my.states * 2 * bands), ignored(my.states * 2 * bands), weight(bands);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    std::fill(here.begin(), here.end(), 0.0);
+    const Vec3 p = patch.point(sobol_owen(i, 0, scramble), sobol_owen(i, 1, scramble));
+    RandomStream random(mix(stream, i));
+    for (std::size_t side = 0; side < sides; ++side) {
+      const Vec3 up = side == 0 ? n : -n, from = p + lift * up;
+      const auto dimension = static_cast<unsigned>(2 + 2 * side);
+      const Vec3 d = cosine_direction(up, sobol_owen(i, dimension, scramble), sobol_owen(i, dimension + 1, scramble));
+      my.one_side(from, up, d, nowhere, random, weight.data(), here.data() + side * bands, ignored.data(), rays);
+      if (my.has_sun)
+        my.sun_at(from, nowhere, up, sobol_owen(i, 6, scramble), sobol_owen(i, 7, scramble), rays,
+                  [&](std::size_t s, bool on_side, double factor) {
+                    if (on_side)
+                      for (std::size_t b = 0; b < bands; ++b) here[(2 * s + side) * bands + b] += factor * my.beams[s].sun->irradiance[b];
+                  });
+    }
+    if (my.lamps) {
+      double x[6];
+      for (unsigned k = 0; k < 6; ++k) x[k] = sobol_owen(i, k, lights);
+      my.lamps_at(p, nowhere, n, lift, x, rays, [&](std::size_t s, bool on_front, double factor, const std::vector<double>& strength) {
+        for (std::size_t b = 0; b < bands; ++b) here[(2 * s + (on_front ? 0 : 1)) * bands + b] += factor * strength[b];
+      });
+    }
+    for (std::size_t s = 0; s < my.states; ++s)
+      for (std::size_t side = 0; side < sides; ++side)
+        for (std::size_t b = 0; b < bands; ++b) sums[(side * my.states + s) * bands + b] += here[(2 * s + side) * bands + b] / count;
+  }
 }
 
 PathSampler::Impl::Particles PathSampler::Impl::particles(std::uint32_t batch, std::uint32_t count) const {
@@ -287,7 +401,24 @@ PathSampler::Impl::Particles PathSampler::Impl::particles(std::uint32_t batch, s
   const Vec3 centre = rays.bounds().centre();
   const double radius = 0.5 * glm::length(rays.bounds().size());
   std::vector<double> weight(bands);
-  // Sends one particle that stands for power[b] along the line that comes from direction d, through the point u, v of a disc that
+  std::optional<LampEmission> emission;
+  if (lamps) emission.emplace(lamps->lamps());
+  // Follows a particle that stands for factor x power[b].
+  const auto follow = [&](std::size_t s, const Vec3& from, const Vec3& d, double factor, const std::vector<double>& power,
+                          RandomStream& random) {
+    std::fill(weight.begin(), weight.end(), 1.0);
+    walk(
+        from, d, d, nowhere, weight.data(), random, sum.rays, [](int, const Vec3&, const Vec3&, const Vec3&, double) {},
+        [&](int bounce, CopyFacet, const Vec3&, const Vec3&, bool) {
+          if (bounce == 0)
+            for (std::size_t b = 0; b < bands; ++b) sum.in[s * bands + b] += factor * power[b];
+        },
+        [&](int bounce, const Vec3&) {
+          if (bounce > 0)
+            for (std::size_t b = 0; b < bands; ++b) sum.out[s * bands + b] += factor * power[b] * weight[b];
+        });
+  };
+  // Sends one particle that stands for irradiance[b] along the line that comes from direction d, through the point u, v of a disc that
   // holds the scene's shadow, or of the cell's top or bottom.
   const auto send = [&](std::size_t s, const Vec3& d, double u, double v, double factor, const std::vector<double>& irradiance,
                         RandomStream& random) {
@@ -305,17 +436,7 @@ PathSampler::Impl::Particles PathSampler::Impl::particles(std::uint32_t batch, s
       from = centre + 2.0 * radius * d + r * std::cos(2.0 * pi * v) * a + r * std::sin(2.0 * pi * v) * b;
       factor *= pi * radius * radius;
     }
-    std::fill(weight.begin(), weight.end(), 1.0);
-    walk(
-        from, -d, nowhere, weight.data(), random, sum.rays,
-        [&](int bounce, CopyFacet, const Vec3&, const Vec3&, bool) {
-          if (bounce == 0)
-            for (std::size_t b = 0; b < bands; ++b) sum.in[s * bands + b] += factor * irradiance[b];
-        },
-        [&](int bounce, const Vec3&) {
-          if (bounce > 0)
-            for (std::size_t b = 0; b < bands; ++b) sum.out[s * bands + b] += factor * irradiance[b] * weight[b];
-        });
+    follow(s, from, -d, factor, irradiance, random);
   };
   for (std::size_t s = 0; s < states; ++s) {
     const std::uint64_t stream = mix(seed ^ 0x65736361ULL, s, batch);
@@ -330,6 +451,14 @@ PathSampler::Impl::Particles PathSampler::Impl::particles(std::uint32_t batch, s
         const double z = all_round ? 2.0 * x(6) - 1.0 : x(6), r = std::sqrt(1.0 - z * z), azimuth = 2.0 * pi * x(7);
         const Vec3 d{r * std::cos(azimuth), r * std::sin(azimuth), z};
         send(s, d, x(4), x(5), (all_round ? 4.0 : 2.0) * pi * sky->relative_radiance(d), sky->irradiance, random);
+      }
+      if (emission && emission->power() > 0.0 && lamps->lamps().set_of_state[s] != Lamps::none) {
+        double numbers[5];
+        for (unsigned k = 0; k < 5; ++k) numbers[k] = sobol_owen(i, k, scramble ^ 0x6c616d70u);
+        const auto particle = emission->draw(numbers);
+        if (lamps->lamps().shines(lamps->lamps().set_of_state[s], particle.unit))
+          follow(s, particle.from + clearance * particle.direction, particle.direction, particle.weight,
+                 lamps->lamps().units[particle.unit].power, random);
       }
     }
   }

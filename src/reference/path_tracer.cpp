@@ -9,6 +9,9 @@
 
 #include <sunfleck/core/timer.hpp>
 #include <sunfleck/reference/path_sampler.hpp>
+#include <sunfleck/visibility/endless_light.hpp>
+
+#include "sensor_paths.hpp"
 
 namespace sunfleck {
 
@@ -82,6 +85,21 @@ class Block {
   std::vector<float> irradiance_, sunlit_, variance_;
 };
 
+/// Of facets with an area: the same whether copies are written out or not, so that sensors stand where they stand with other methods.
+const Box& bounds_of(const FacetScene& facets) {
+  return facets.bounds;
+}
+
+Box bounds_of(const FacetRows& rows) {
+  Box bounds;
+  for (std::uint32_t copy = 0; copy <= rows.placed().copies.size(); ++copy)
+    rows.visit(copy, 0, rows.facet_count(copy), [&](std::uint64_t, const Triangle& corners, std::uint32_t, std::uint32_t) {
+      if (static_cast<float>(glm::length(area_vector(corners))) > 0.0f)
+        for (const auto& p : corners) bounds.add(p);
+    });
+  return bounds;
+}
+
 template <class Facets>
 SolveReport trace(const Scene& scene, const Facets& facets, const ReferenceSettings& settings, IrradianceSink& sink, Progress& progress) {
   SolveReport report;
@@ -93,6 +111,7 @@ SolveReport trace(const Scene& scene, const Facets& facets, const ReferenceSetti
   Stopwatch building;
   const RayScene rays(facets);
   const std::size_t n = rays.facet_count();
+  check_lamplight_ends(scene, rays);
   const PathSampler sampler(scene, rays, settings.seed);
   add_seconds(report.timings, "build the tree of rays", building.seconds());
 
@@ -125,9 +144,17 @@ SolveReport trace(const Scene& scene, const Facets& facets, const ReferenceSetti
     for (std::size_t b = 0; b < bands; ++b) report.balance[s][b].escaped = report.balance[s][b].incident * escape.share[s * bands + b];
   add_seconds(report.timings, "balance", balancing.seconds());
 
+  Stopwatch sensing;
+  std::uint64_t sensor_rays = 0;
+  if (!scene.sensors.empty()) {
+    arena.execute([&] { report.sensors = sensor_readings(scene, bounds_of(facets), sampler, settings.samples, sensor_rays, progress); });
+    add_seconds(report.timings, "sensors", sensing.seconds());
+  }
+
   report.counts = {{"samples per facet", std::uint64_t{samples} * reference_randomisations},
                    {"rays", ray_count + escape.rays},
                    {"stacked pairs", rays.stacked_pairs()}};
+  if (!scene.sensors.empty()) report.counts.emplace_back("sensor_rays", sensor_rays);
   report.memory = {{"tree of rays", rays.bytes()}};
   return report;
 }

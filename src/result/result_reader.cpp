@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include <fmt/core.h>
+
 #include <sunfleck/core/error.hpp>
 
 #include "result/dataset_reader.hpp"
@@ -250,6 +252,63 @@ StoredProfile Result::profile() const {
     reader.fail("balance/profile/height", std::to_string(out.height.size()) + " rows", std::to_string(out.area.size() + 1));
   reader.expect("balance/profile/absorbed", {impl_->states.size(), out.area.size(), impl_->bands.size()});
   out.absorbed = reader.all<double>("balance/profile/absorbed");
+  return out;
+}
+
+std::vector<StoredLamp> Result::lamps() const {
+  const auto& reader = impl_->reader;
+  std::vector<StoredLamp> out;
+  if (!reader.has("lamps")) return out;
+  const std::size_t s = impl_->states.size(), b = impl_->bands.size();
+  for (const auto& name : reader.strings("lamps/name")) out.push_back({name, 0, {}, {}});
+  const std::size_t n = out.size();
+  reader.expect("lamps/copies", {n});
+  reader.expect("lamps/power", {n, b});
+  reader.expect("lamps/shines", {s, n});
+  const auto copies = reader.all<std::uint32_t>("lamps/copies");
+  const auto power = reader.all<double>("lamps/power");
+  const auto shines = reader.all<std::uint8_t>("lamps/shines");
+  for (std::size_t l = 0; l < n; ++l) {
+    out[l].copies = copies[l];
+    for (std::size_t i = 0; i < b; ++i) out[l].power.push_back(power[l * b + i]);
+    for (std::size_t i = 0; i < s; ++i) out[l].shines.push_back(shines[i * n + l] != 0);
+  }
+  return out;
+}
+
+std::vector<StoredSensor> Result::sensors() const {
+  const auto& reader = impl_->reader;
+  std::vector<StoredSensor> out;
+  if (!reader.has("names/sensor")) return out;
+  const std::size_t s = impl_->states.size(), b = impl_->bands.size();
+  for (const auto& name : reader.strings("names/sensor")) {
+    const std::string group = "sensors/" + name;
+    if (name.empty() || name.find('/') != std::string::npos || !reader.has(group))
+      reader.fail("names/sensor", "\"" + name + "\"", "the name of a group in /sensors");
+    auto& sensor = out.emplace_back();
+    sensor.name = name;
+    sensor.kind = reader.text_attribute(group, "kind");
+    sensor.area = reader.all<float>(group + "/area");
+    const std::size_t k = sensor.area.size();
+    const auto values = [&](const char* dataset, const std::vector<std::size_t>& dims) {
+      reader.expect(group + dataset, dims);
+      return reader.all<float>(group + dataset);
+    };
+    sensor.reading.irradiance = values("/irradiance", {s, k, b});
+    sensor.reading.standard_error = values("/standard_error", {s, k, b});
+    if (reader.has(group + "/irradiance_back")) {
+      sensor.reading.back = values("/irradiance_back", {s, k, b});
+      sensor.reading.back_standard_error = values("/standard_error_back", {s, k, b});
+    }
+    for (const char* name_of : {"/centroid", "/normal"}) reader.expect(group + name_of, {k, 3});
+    sensor.centroid = reader.all<double>(group + "/centroid");
+    sensor.normal = reader.all<double>(group + "/normal");
+    if (!reader.has(group + "/cells")) continue;
+    reader.expect(group + "/cells", {2});
+    sensor.cells = reader.all<std::uint32_t>(group + "/cells");
+    if (std::size_t{sensor.cells[0]} * sensor.cells[1] != k)
+      reader.fail(group + "/cells", fmt::format("{} x {}", sensor.cells[0], sensor.cells[1]), fmt::format("{} in all", k));
+  }
   return out;
 }
 

@@ -14,6 +14,7 @@
 #include "result/finish_result.hpp"
 #include "result/height_profile.hpp"
 #include "result/organ_rows.hpp"
+#include "result/write_devices.hpp"
 
 namespace sunfleck {
 
@@ -66,6 +67,7 @@ class ResultWriter::Impl {
 
     h5::ArrayWriter arrays(file_, queue_);
     h5::write_light_and_optics(file_, arrays, scene, rows_.materials());
+    h5::write_lamps(file_, arrays, scene);
     h5::write_names(file_, arrays, names_, placed.paths);
     if (keeps("geometry")) h5::write_geometry(file_, arrays, scene, placed);
     organs_.emplace(file_, queue_, rows_, names_, states_, bands_, [this](const char* name) { return keeps(name); });
@@ -115,6 +117,7 @@ class ResultWriter::Impl {
 
     h5::ArrayWriter arrays(file_, queue_);
     h5::write_report(file_, arrays, report, certificate, states_, bands_, profile_);
+    h5::write_sensors(file_, arrays, rows_.scene(), report.sensors);
     facets_group_.close();
     variance_group_.close();
     file_.commit();

@@ -7,6 +7,8 @@
 #include <sunfleck/core/error.hpp>
 #include <sunfleck/scene/build.hpp>
 
+#include "scene/check_devices.hpp"
+
 namespace sunfleck {
 
 namespace {
@@ -24,6 +26,8 @@ class Check {
     plants();
     groups();
     group_depth();
+    check_lamps(scene_);
+    check_sensors(scene_);
   }
 
  private:

@@ -137,7 +137,8 @@ std::string organ_name(const Plant& plant, std::uint32_t structure) {
 PlacedScene place(const Scene& scene) {
   PlacedScene out;
   Placing(scene, out).run();
-  if (out.facets == 0) throw InputError(location(scene.file), "no facet", "at least one plant placed in the world, or a ground");
+  if (out.facets == 0 && scene.sensors.empty())
+    throw InputError(location(scene.file), "no facet", "at least one plant placed in the world, or a ground");
   return out;
 }
 

@@ -98,12 +98,3 @@ TEST_CASE("Wrong types say what was found and what was expected", "[hostile][sce
   CHECK(message(light + "[solve]\nsamples = 1.5\n") ==
         "scene.toml:6: solve.samples: found 1.5; expected a whole number from 1 to 1073741824");
 }
-
-TEST_CASE("Parts of a later version are refused by name", "[hostile][scene]") {
-  CHECK(message(light + "[[lamp]]\nmesh = \"lamp.obj\"\nexitance = { PAR = 1, NIR = 1 }\n") ==
-        "scene.toml:5: lamp[0]: not supported by this version: leave [[lamp]] out");
-  CHECK(message(light + "[[sensor]]\nname = \"u\"\ngrid = { z = 0.5, cells = [10, 10] }\n") ==
-        "scene.toml:5: sensor[0]: not supported by this version: leave [[sensor]] out");
-  CHECK(message(light + "[[lamp]]\nmesh = \"lamp.obj\"\nexitence = { PAR = 1, NIR = 1 }\n") ==
-        "scene.toml:7: lamp[0].exitence: unknown key; did you mean \"exitance\"?");
-}

@@ -17,7 +17,7 @@ std::string sun(const std::string& keys) {
 }  // namespace
 
 TEST_CASE("A scene needs light", "[hostile][scene]") {
-  CHECK(message("") == "scene.toml: found no light; expected [sun], [sky], or any number of [[state]]");
+  CHECK(message("") == "scene.toml: found no light; expected [sun], [sky], [[lamp]], or any number of [[state]]");
   CHECK(message("state = []\n") == "scene.toml:2: state: found an empty array; expected at least one state");
   CHECK(message("[[state]]\nname = \"noon\"\n") == "scene.toml:2: state[0]: found no light; expected `sun`, `sky` or both");
   CHECK(

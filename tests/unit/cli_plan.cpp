@@ -38,7 +38,7 @@ const PlanItem& item(const Plan& plan, const std::string& name) {
 
 TEST_CASE("what a scene does not have is left out, with the reason", "[cli][plan]") {
   const Plan plan = make_plan(one_triangle(), {"clustering", Quality::standard}, silent());
-  for (const char* name : {"states", "sun disc", "sky", "periodicity", "ground", "copies", "scattering", "transmission"}) {
+  for (const char* name : {"states", "sun disc", "sky", "lamps", "sensors", "periodicity", "ground", "copies", "scattering", "transmission"}) {
     INFO(name);
     CHECK_FALSE(item(plan, name).done);
     CHECK_FALSE(item(plan, name).why.empty());
@@ -73,4 +73,16 @@ TEST_CASE("a method leaves out what it does not do", "[cli][plan]") {
         "method 'direct' stops at the light that arrives first");
   CHECK_FALSE(item(make_plan(scene, {"direct", Quality::standard}, silent()), "transmission").done);
   CHECK_FALSE(item(make_plan(scene, {"reference", Quality::standard}, silent()), "certificate").done);
+}
+
+TEST_CASE("a scene with lamps or sensors is not left to instantiation, which knows neither", "[cli][plan][lamps][sensors]") {
+  Scene scene = one_triangle();
+  scene.sensors.push_back({"grid", SensorGrid{1.0, {1, 1}, {}, {}}, false, 0});
+  const auto with_sensor = default_method(scene, Quality::draft, silent());
+  CHECK(with_sensor.method == "clustering");
+  CHECK(with_sensor.why == "instantiation knows no sensors");
+  scene.lamps.emplace_back();
+  const auto with_lamp = default_method(scene, Quality::draft, silent());
+  CHECK(with_lamp.method == "clustering");
+  CHECK(with_lamp.why == "instantiation knows no lamps");
 }

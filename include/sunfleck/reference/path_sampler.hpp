@@ -32,7 +32,7 @@ class SampleTarget {
 /// Means over the samples of one randomisation. s states, b bands.
 struct SampleMeans {
   std::vector<double> irradiance;  ///< [s][2][b] front, back, all light [W m^-2]
-  std::vector<double> direct;      ///< [s][2][b] straight from sun and sky [W m^-2]
+  std::vector<double> direct;      ///< [s][2][b] straight from sun, sky and lamps [W m^-2]
   std::vector<double> absorbed;    ///< [s][b] per one-sided area [W m^-2]
   std::vector<double> sunlit;      ///< [s][2] [-]
   std::uint64_t rays = 0;
@@ -43,7 +43,8 @@ struct SampleMeans {
 /// added at every point by a shadow ray to a point of the disc (its centre, if the diameter is 0); at a hit the path goes on
 /// with the reflected or the transmitted part, chosen in proportion to what all bands together carry, and carries one weight a band.
 /// From half of the first weight on, a path is ended at random and the survivors weighted up (Russian roulette).
-/// One path serves all bands and all states' skies; shadow rays go to each state's sun.
+/// One path serves all bands and all states' skies; shadow rays go to each state's sun, and one to a point of a lamp; lamp faces that a
+/// path crosses count too, each of the two weighted by how likely it is to find the light (balance heuristic).
 ///
 /// The first dimensions (point and direction from either side; for the sun, point and place on the disc) are Owen-scrambled Sobol'
 /// sequences per target and randomisation, the rest independent; numbers depend on (seed, key of the target, randomisation, sample) alone.
@@ -58,13 +59,18 @@ class PathSampler {
   bool has_sun() const;  ///< in any state
 
   /// `count` samples, each one point with one path from its front and one from its back, and `sun_points` (at least 1) further
-  /// points with shadow rays to the suns. Any number of threads may call it.
+  /// points with shadow rays to the suns; as many rays go to lamps from the first point. Any number of threads may call it.
   void sample(const SampleTarget& target, std::uint32_t randomisation, std::uint32_t count, std::uint32_t sun_points,
               SampleMeans& means) const;
 
+  /// Irradiance on a patch that is no facet, such as a cell of a sensor: adds the mean of `count` samples to sums [2][s][b] front, back
+  /// [W m^-2]; the back only if `both`. Rays start `lift` [m] above the side.
+  void sample_patch(const Patch& patch, bool both, double lift, std::uint64_t key, std::uint32_t count, double* sums,
+                    std::uint64_t& rays) const;
+
   /// Share of the light that first meets facets or ground which leaves the scene again, per state and band [s][b] [-], from 16
-  /// times `count` particles for each state's sun and sky, sent into the scene: an estimate independent of sample(), for the balance. 0
-  /// where no light comes in.
+  /// times `count` particles for each state's sun, sky and lamps, sent into the scene: an estimate independent of sample(), for the
+  /// balance. 0 where no light comes in.
   struct Escape {
     std::vector<double> share, standard_error;
     std::uint64_t rays = 0;

@@ -30,6 +30,25 @@ struct StoredProfile {
   std::vector<double> absorbed;  ///< [s][l][b] [W]
 };
 
+/// A lamp of the scene: its name, how many hang, the power of all copies together and the states in which they shine.
+struct StoredLamp {
+  std::string name;
+  std::uint32_t copies = 0;
+  std::vector<double> power;  ///< [b] [W]
+  std::vector<bool> shines;   ///< [s]
+};
+
+/// What a sensor measured; k cells.
+struct StoredSensor {
+  std::string name, kind;            ///< kind: "grid", "profile", "mesh"
+  std::vector<float> area;           ///< [k] [m^2]
+  std::vector<double> centroid;      ///< [k][3] [m]
+  std::vector<double> normal;        ///< [k][3] of the front
+  std::vector<std::uint32_t> cells;  ///< of a grid: along x, along y; else empty
+  SensorReading reading;
+  std::size_t size() const { return area.size(); }
+};
+
 /// A result file, open for reading. Dataset names are as in docs/formats-result.md, without the leading slash: "facets/absorbed".
 /// Nothing is trusted: a file cut short, a wrong type, shapes that contradict each other or are larger than what is stored, indices
 /// out of range and values that are not finite are InputErrors that name file and dataset. For one thread at a time.
@@ -73,6 +92,8 @@ class Result {
 
   std::vector<std::vector<Balance>> balance() const;  ///< [s][b]
   StoredProfile profile() const;
+  std::vector<StoredLamp> lamps() const;      ///< empty if the scene has none
+  std::vector<StoredSensor> sensors() const;  ///< the same
   std::vector<IterationRow> convergence() const;
   std::vector<double> spectral_radius() const;  ///< [b] as in SolveReport; empty where nothing was iterated
   Timings timings() const;

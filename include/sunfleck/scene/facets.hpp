@@ -47,7 +47,7 @@ struct FacetScene {
 };
 
 /// Writes out every copy of a scene that has passed check_scene(). Throws InputError if it has more than 2^31 facets, more than memory
-/// holds, a facet of infinite area, or no facet.
+/// holds, a facet of infinite area, or no facet and no sensor.
 FacetScene expand(const Scene& scene);
 
 }  // namespace sunfleck

@@ -12,6 +12,9 @@
 #include <sunfleck/light/state.hpp>
 #include <sunfleck/plant/optics.hpp>
 #include <sunfleck/plant/plant.hpp>
+#include <sunfleck/scene/lamp.hpp>
+#include <sunfleck/scene/placement.hpp>
+#include <sunfleck/scene/sensor.hpp>
 
 namespace sunfleck {
 
@@ -31,11 +34,6 @@ struct Ground {
   double height = 0.0;       ///< [m]
   std::optional<Mesh> mesh;  ///< takes the place of size, centre, cells, height
   Optics optics;             ///< reflectance_front = reflectance_back, transmittance 0
-};
-
-/// A copy of a plant or group: local frame -> frame of what holds it.
-struct Placement {
-  Affine map;
 };
 
 /// A plant of the scene; `plant` is shared where two entries read the same file with the same unit.
@@ -90,6 +88,8 @@ struct Scene {
   std::optional<Ground> ground;
   std::vector<PlantEntry> plants;
   std::vector<GroupEntry> groups;
+  std::vector<LampEntry> lamps;
+  std::vector<SensorEntry> sensors;
   OutputChoice output;
   SolveChoice solve;
   std::vector<std::string> notes;  ///< what the reader wants the user to know ("sun below the horizon in state ...")

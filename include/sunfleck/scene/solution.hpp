@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <sunfleck/core/timer.hpp>
+#include <sunfleck/scene/sensor.hpp>
 
 namespace sunfleck {
 
@@ -28,10 +29,18 @@ class IrradianceSink {
   virtual void rows(const IrradianceRows& rows) = 0;
 };
 
+/// What one sensor measured. s states, k cells, b bands.
+struct SensorReading {
+  std::vector<Patch> cells;                      ///< [k] as place_sensors() made them
+  std::vector<float> irradiance;                 ///< [s][k][b] on the front [W m^-2]
+  std::vector<float> standard_error;             ///< [s][k][b] of the sampling by rays, from independent randomisations [W m^-2]
+  std::vector<float> back, back_standard_error;  ///< the same of the back; empty for sensors with one side
+};
+
 /// Power balance of one state and band [W]; of one cell where the scene is periodic.
 /// incident = leaves + ground + escaped + residual.
 struct Balance {
-  double incident = 0;  ///< direct light that facets and ground meet first
+  double incident = 0;  ///< direct light (sun, sky, lamps) that facets and ground meet first
   double leaves = 0;    ///< absorbed by plant facets
   double ground = 0;    ///< absorbed by the ground
   double escaped = 0;   ///< scattered light that leaves the scene
@@ -60,6 +69,7 @@ struct SolveReport {
   std::vector<std::pair<std::string, std::uint64_t>> counts;  ///< deterministic work: "links", "fragments", "directions", "rays"
   std::vector<std::pair<std::string, std::uint64_t>> memory;  ///< bytes held per phase, counted by the program
   Timings timings;
+  std::vector<SensorReading> sensors;  ///< as Scene::sensors
 };
 
 /// Settings shared by all methods.
