@@ -6,6 +6,7 @@
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 
+#include <sunfleck/core/error.hpp>
 #include <sunfleck/core/memory.hpp>
 
 #include "instantiation/batches.hpp"
