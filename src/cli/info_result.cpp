@@ -125,6 +125,8 @@ void print_states(const Result& r) {
                            fmt::join(state.sun->irradiance, " / "));
     if (state.sky)
       light += fmt::format("{}sky {} {:g}", light.empty() ? "" : ", ", name_of(state.sky->model), fmt::join(state.sky->irradiance, " / "));
+    for (const auto& lamp : r.lamps())
+      if (lamp.shines[s]) light += (light.empty() ? "" : ", ") + lamp.name;
     const std::string duration = state.duration_s > 0 ? fmt::format(", {:g} s", state.duration_s) : "";
     fmt::print("{:<11}{}: {}{}\n", s == 0 ? "states" : "", state.name.empty() ? "(no name)" : state.name, light.empty() ? "dark" : light,
                duration);

@@ -91,14 +91,15 @@ void add_devices(const Scene& scene, const std::string& method, std::vector<Plan
   } else {
     std::size_t copies = 0;
     for (const auto& lamp : scene.lamps) copies += lamp.placements.size();
-    items.push_back({"lamps", true, fmt::format("{}: shadow rays from every cell of the scene to points of lamps", counted(copies, "lamp", "lamps"))});
+    items.push_back(
+        {"lamps", true, fmt::format("{}: shadow rays from every cell of the scene to points of lamps", counted(copies, "lamp", "lamps"))});
   }
   if (scene.sensors.empty())
     items.push_back({"sensors", false, "the scene has none"});
   else
     items.push_back({"sensors", true,
                      fmt::format("{}: rays {}, after the solve", counted(scene.sensors.size(), "sensor", "sensors"),
-                                 direct_only              ? "to sun, sky and lamps"
+                                 direct_only             ? "to sun, sky and lamps"
                                  : method == "reference" ? "followed as paths"
                                                          : "that gather the light of what they meet")});
 }

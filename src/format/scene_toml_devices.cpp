@@ -56,7 +56,8 @@ std::vector<Placement> lamp_placements(const TomlValue& table, const Scene& scen
   if (place && grid) grid->fail("`grid` beside `place`", "one of them");
   if (!photometric)
     for (const auto* value : {&position, &aim, &turn})
-      if (*value) (*value)->fail("`position`, `aim` or `turn` beside `mesh`", "`place` or `grid`: a mesh stands as its file says, or there");
+      if (*value)
+        (*value)->fail("`position`, `aim` or `turn` beside `mesh`", "`place` or `grid`: a mesh stands as its file says, or there");
   if (place || grid) {
     for (const auto* value : {&position, &aim, &turn})
       if (*value) (*value)->fail("`position`, `aim` or `turn` beside `place` or `grid`", "them inside");
@@ -75,7 +76,10 @@ void read_lamp_strength(const TomlValue& table, const Scene& scene, LampEntry& l
   if (lamp.photometry && exitance)
     exitance->fail("`exitance` beside `ies`", "`power` per band: a photometric file says where light goes, not how much");
   if (exitance.has_value() == power.has_value())
-    throw InputError(table.where(), exitance ? "both `exitance` and `power`" : lamp.photometry ? "no `power`" : "neither `exitance` nor `power`",
+    throw InputError(table.where(),
+                     exitance          ? "both `exitance` and `power`"
+                     : lamp.photometry ? "no `power`"
+                                       : "neither `exitance` nor `power`",
                      lamp.photometry ? "the power that the lamp gives off per band" : "one of them per band");
   lamp.by_power = power.has_value();
   lamp.strength = read_per_band(exitance ? *exitance : *power, scene, strength_value);
@@ -111,9 +115,8 @@ void note_upward(const TomlValue& table, const LampEntry& lamp, Scene& scene) {
       (z > 0.0 ? up : down) += std::abs(z);
     }
   if (up > 0.0 && down <= 1e-6 * up)
-    scene.notes.push_back(
-        fmt::format("{}: no face of this lamp looks down: faces shine from the side from which their corners run counter-clockwise",
-                    table.where()));
+    scene.notes.push_back(fmt::format(
+        "{}: no face of this lamp looks down: faces shine from the side from which their corners run counter-clockwise", table.where()));
 }
 
 std::optional<std::array<double, 2>> pair(const TomlValue& owner, const char* key, const char* names, bool positive) {
@@ -170,15 +173,14 @@ SensorEntry read_sensor(const TomlValue& table, const Scene& scene) {
 }  // namespace
 
 TomlSchema lamp_schema(const TomlSchema& per_band) {
-  return TomlSchema::of(
-      {"name", "mesh", "unit", "ies", "position", "aim", "turn", "states"},
-      {{"exitance", per_band}, {"power", per_band}, {"place", placement_schema({})}, {"grid", grid_schema()}});
+  return TomlSchema::of({"name", "mesh", "unit", "ies", "position", "aim", "turn", "states"},
+                        {{"exitance", per_band}, {"power", per_band}, {"place", placement_schema({})}, {"grid", grid_schema()}});
 }
 
 TomlSchema sensor_schema() {
-  return TomlSchema::of({"name", "mesh", "unit", "sides", "samples"},
-                        {{"grid", TomlSchema::of({"z", "cells", "size", "center"})},
-                         {"profile", TomlSchema::of({"step", "low", "high", "size", "center"})}});
+  return TomlSchema::of(
+      {"name", "mesh", "unit", "sides", "samples"},
+      {{"grid", TomlSchema::of({"z", "cells", "size", "center"})}, {"profile", TomlSchema::of({"step", "low", "high", "size", "center"})}});
 }
 
 void read_lamps(const TomlValue& root, Scene& scene) {

@@ -50,6 +50,7 @@ InstantiationDensity adapted(InstantiationDensity density, std::uint64_t facets)
 
 InstantiationPlan plan_instantiation(const Scene& scene, const PlacedScene& placed, const InstantiationSettings& settings,
                                      Progress& progress) {
+  check_instantiable(scene);
   const auto density = adapted(settings.density, placed.facets);
   OperatorDensity pilot = density.coarse;
   pilot.directions = 16;

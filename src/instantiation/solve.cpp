@@ -84,12 +84,16 @@ InstantiationDensity instantiation_density(Quality quality) {
   return {};
 }
 
-SolveReport solve_instantiation(const Scene& scene, const PlacedScene& placed, const InstantiationSettings& settings, IrradianceSink& sink,
-                                Progress& progress) {
+void check_instantiable(const Scene& scene) {
   if (!scene.lamps.empty() || !scene.sensors.empty())
     throw InputError(location(scene.file, 0, scene.lamps.empty() ? "sensor" : "lamp"),
                      scene.lamps.empty() ? "a sensor with method 'instantiation'" : "a lamp with method 'instantiation'",
                      "clustering, flat, direct or reference, which know lamps and sensors");
+}
+
+SolveReport solve_instantiation(const Scene& scene, const PlacedScene& placed, const InstantiationSettings& settings, IrradianceSink& sink,
+                                Progress& progress) {
+  check_instantiable(scene);
   std::optional<tbb::global_control> control;
   if (settings.threads > 0) control.emplace(tbb::global_control::max_allowed_parallelism, settings.threads);
   SolveReport report;

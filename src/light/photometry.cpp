@@ -73,9 +73,9 @@ void prepare_photometry(Photometry& p, const std::string& where) {
     throw InputError(where, fmt::format("vertical angles from {} to {}", p.vertical_deg.front(), p.vertical_deg.back()),
                      "0 to 180 degrees");
   const double first = p.horizontal_deg.front(), last = p.horizontal_deg.back();
-  const bool known = p.horizontal_deg.size() == 1 ? first == 0.0
-                                                  : (first == 0.0 && (last == 90.0 || last == 180.0 || last == 360.0)) ||
-                                                        (first == 90.0 && last == 270.0);
+  const bool known = p.horizontal_deg.size() == 1
+                         ? first == 0.0
+                         : (first == 0.0 && (last == 90.0 || last == 180.0 || last == 360.0)) || (first == 90.0 && last == 270.0);
   if (!known)
     throw InputError(where, fmt::format("horizontal angles from {} to {}", first, last),
                      "0 alone, 0 to 90, 0 to 180, 90 to 270 or 0 to 360 degrees");

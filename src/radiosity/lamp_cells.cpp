@@ -43,8 +43,7 @@ std::uint64_t lamp_rays(const Elements& e, const RadiosityDensity& density) {
   const auto& s = e.surface;
   std::uint64_t rays = 0;
   for (std::size_t t = 0; t < s.size(); ++t)
-    if (s.split[t] > 0)
-      rays += std::uint64_t{s.first_cell[t + 1] - s.first_cell[t]} * lamp_rays(s.cell_area[t], e.organ_area, density);
+    if (s.split[t] > 0) rays += std::uint64_t{s.first_cell[t + 1] - s.first_cell[t]} * lamp_rays(s.cell_area[t], e.organ_area, density);
   return rays;
 }
 
@@ -71,8 +70,7 @@ LampIrradiance lamp_irradiance(const LampLight& lamps, const FacetScene& facets,
           lamps.on_patch(patch, facet, 0.0, rays, mix(mix(settings.seed, lamp_stream), facet, number), scene, 1.0, light.data());
           const std::size_t cell = s.first_cell[t] + number;
           for (std::size_t k = 0; k < sets; ++k)
-            for (std::size_t i = 0; i < 2 * bands; ++i)
-              out.sets[k][2 * cell * bands + i] = static_cast<float>(light[2 * k * bands + i]);
+            for (std::size_t i = 0; i < 2 * bands; ++i) out.sets[k][2 * cell * bands + i] = static_cast<float>(light[2 * k * bands + i]);
         });
       }
     });

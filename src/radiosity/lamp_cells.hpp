@@ -27,7 +27,7 @@ std::uint32_t lamp_rays(double cell_area, double organ_area, const RadiosityDens
 /// Over all cells.
 std::uint64_t lamp_rays(const Elements& elements, const RadiosityDensity& density);
 
-LampIrradiance lamp_irradiance(const LampLight& lamps, const FacetScene& facets, const Elements& elements, const RadiositySettings& settings,
-                               const Surroundings& scene, Progress& progress);
+LampIrradiance lamp_irradiance(const LampLight& lamps, const FacetScene& facets, const Elements& elements,
+                               const RadiositySettings& settings, const Surroundings& scene, Progress& progress);
 
 }  // namespace sunfleck

@@ -83,8 +83,8 @@ LampLight::LampLight(const Scene& scene) : lamps_(place_lamps(scene)), bands_(sc
   if (power > 0.0) centre_ /= power;
 }
 
-/// The chance of an image is the view factor, from both sides together, of its cell as a rectangle at the lamps' height: over all images these
-/// add up to 1.
+/// The chance of an image is the view factor, from both sides together, of its cell as a rectangle at the lamps' height: over all images
+/// these add up to 1.
 LampLight::Image LampLight::draw_image(const Vec3& p, const Vec3& n, double x, double y) const {
   const double width = cell_->width(), depth = cell_->depth(), rise = centre_.z - p.z;
   const double up = rise < 0.0 ? -1.0 : 1.0, height = std::max(std::abs(rise), 0.25 * std::min(width, depth));
@@ -96,8 +96,10 @@ LampLight::Image LampLight::draw_image(const Vec3& p, const Vec3& n, double x, d
   const double x0 = cell_->x_low + i * width, y0 = cell_->y_low + j * depth, z = p.z + up * height;
   const Vec3 a{x0, y0, z}, b{x0 + width, y0, z}, c{x0 + width, y0 + depth, z}, e{x0, y0 + depth, z};
   Image image;
-  image.chance = view_factor(p, n, {a, b, c}) + view_factor(p, n, {a, c, e}) + view_factor(p, -n, {a, b, c}) + view_factor(p, -n, {a, c, e});
-  image.shift = {(i - std::floor((centre_.x - cell_->x_low) / width)) * width, (j - std::floor((centre_.y - cell_->y_low) / depth)) * depth, 0.0};
+  image.chance =
+      view_factor(p, n, {a, b, c}) + view_factor(p, n, {a, c, e}) + view_factor(p, -n, {a, b, c}) + view_factor(p, -n, {a, c, e});
+  image.shift = {(i - std::floor((centre_.x - cell_->x_low) / width)) * width, (j - std::floor((centre_.y - cell_->y_low) / depth)) * depth,
+                 0.0};
   return image;
 }
 
@@ -128,8 +130,9 @@ void LampLight::candidates(const Vec3& p, const Vec3& n, double pick, double x, 
   }
   for (std::size_t k = 0; k < most_candidates; ++k) {
     const double at = (static_cast<double>(k) + pick) / most_candidates * cumulative_.back();
-    const auto e = std::min<std::size_t>(
-        static_cast<std::size_t>(std::upper_bound(cumulative_.begin(), cumulative_.end(), at) - cumulative_.begin()), cumulative_.size() - 1);
+    const auto e =
+        std::min<std::size_t>(static_cast<std::size_t>(std::upper_bound(cumulative_.begin(), cumulative_.end(), at) - cumulative_.begin()),
+                              cumulative_.size() - 1);
     const double share = cumulative_[e] - (e > 0 ? cumulative_[e - 1] : 0.0);
     look(e, cumulative_.back() / (most_candidates * share));
   }

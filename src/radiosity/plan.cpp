@@ -130,8 +130,8 @@ class Planner {
     const std::uint64_t sides = 2 * plan_.elements, slots = plan_.clusters * channels;
     // of each half: starts of the rows of near links, lines and how many of them are open; far lines of sides and nodes; the sun's first
     // reflection
-    const std::uint64_t half =
-        4 * sides * word + (tree ? sides * channels + 2 * slots * word + plan_.clusters * word : 0) + (sun_ || lamps_ ? sides * columns_ * word : 0);
+    const std::uint64_t half = 4 * sides * word + (tree ? sides * channels + 2 * slots * word + plan_.clusters * word : 0) +
+                               (sun_ || lamps_ ? sides * columns_ * word : 0);
     plan_.memory.emplace_back("links", 2 * half + whole(near * sizeof(std::uint32_t) + far * sizeof(FarField::Link)) +
                                            plan_.elements * word + (tree ? tree->bytes() : 0));
     // 7 fields of the solver, 3 and a basis of the iteration; how far the basis grows, the optics alone do not tell
@@ -141,9 +141,10 @@ class Planner {
     // a pair of sides waits in 8 bytes; all that a batch of directions meets is kept in full
     constexpr double bytes_of_pair = 8.0, bytes_of_meeting = 32.0;
     const double in_batch = std::min(directions, line_batch(plan_.elements, settings_.density)) / directions;
-    plan_.memory.emplace_back(
-        "lines", whole(more.near_pairs * times * bytes_of_pair + more.fragments * times * in_batch * bytes_of_meeting) +
-                     (sun_ || lamps_ ? 2 * plan_.cells * columns_ * word : 0) + (skies_ > 0 ? 2 * (3 + 2 * skies_) * plan_.cells * word : 0));
+    plan_.memory.emplace_back("lines",
+                              whole(more.near_pairs * times * bytes_of_pair + more.fragments * times * in_batch * bytes_of_meeting) +
+                                  (sun_ || lamps_ ? 2 * plan_.cells * columns_ * word : 0) +
+                                  (skies_ > 0 ? 2 * (3 + 2 * skies_) * plan_.cells * word : 0));
   }
 
   const Scene& scene_;

@@ -38,7 +38,8 @@ class Gathering {
   void measure(const Patch& patch, bool both, std::uint32_t count, std::uint64_t key, double* sum) const {
     const Vec3 n = patch.normal();
     if (n == Vec3{0.0}) return;
-    for (std::size_t side = 0; side < (both ? 2u : 1u); ++side) gather(patch, side == 0 ? n : -n, count, mix(key, side), sum + side * columns_);
+    for (std::size_t side = 0; side < (both ? 2u : 1u); ++side)
+      gather(patch, side == 0 ? n : -n, count, mix(key, side), sum + side * columns_);
     for (std::size_t k = 0; k < sources_.suns.size(); ++k) sun(patch, n, k, both, count, mix(key, 2, k), sum);
     if (!lamps_.empty()) lamp(patch, both, count, mix(key, 3), sum);
   }
@@ -89,7 +90,8 @@ class Gathering {
       const double cosine = glm::dot(d, n);
       const std::size_t side = cosine > 0.0 ? 0 : 1;
       if (cosine == 0.0 || (side == 1 && !both)) continue;
-      const Vec3 from = patch.point(sobol_owen(i, 0, scramble), sobol_owen(i, 1, scramble)) + (side == 0 ? 1.0 : -1.0) * world_.clearance() * n;
+      const Vec3 from =
+          patch.point(sobol_owen(i, 0, scramble), sobol_owen(i, 1, scramble)) + (side == 0 ? 1.0 : -1.0) * world_.clearance() * n;
       // The sun's irradiance is on a plane that faces the disc's centre, where its mean cosine is (1 + cos radius) / 2.
       if (!world_.blocked(from, d, no_facet, std::numeric_limits<double>::infinity()))
         lit[side] += std::abs(cosine) * 2.0 / (1.0 + cos_radius) / count;

@@ -106,7 +106,8 @@ double LampPaths::crossing_part(const Vec3& p, const Vec3& n, const Vec3& d, con
   if (cell_) {
     const Vec3 met = p + distance * d;
     const Vec3 base = face.corners[0] + hit.u * (face.corners[1] - face.corners[0]) + hit.v * (face.corners[2] - face.corners[0]);
-    density *= image_chance(p, face.corners[0], std::round((met.x - base.x) / cell_->width()), std::round((met.y - base.y) / cell_->depth()));
+    density *=
+        image_chance(p, face.corners[0], std::round((met.x - base.x) / cell_->width()), std::round((met.y - base.y) / cell_->depth()));
   }
   const double by_points = density / face.area * distance * distance / there, by_rays = cosine / pi;
   return by_rays / (by_points + by_rays);

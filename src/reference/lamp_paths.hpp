@@ -30,7 +30,7 @@ class LampPaths {
     double distance = 0;
     double factor = 0;  ///< 0: the lamp does not shine there
   };
-  /// x [6] uniform in [0, 1); n the unit normal at p.
+  /// x [5] uniform in [0, 1); n the unit normal at p.
   Draw draw(const Vec3& p, const Vec3& n, const double* x) const;
 
   /// Calls met(unit, part) for every face that a ray from p crosses from its bright side within `range`; directions are drawn about n with

@@ -105,8 +105,9 @@ struct PathSampler::Impl {
     return std::max(0.0, 1.0 - (on_front ? front : back)[m] - through[m]);
   }
   /// Light by paths, which leave out the sun on the start itself; and that sun. Both add to sums over `count` samples.
-  void add_paths(const SampleTarget& target, std::uint64_t stream, std::uint32_t count, std::uint32_t lamp_points, SampleMeans& sums) const;
+  void add_paths(const SampleTarget& target, std::uint64_t stream, std::uint32_t count, SampleMeans& sums) const;
   void add_sun(const SampleTarget& target, std::uint64_t stream, std::uint32_t count, double share, SampleMeans& sums) const;
+  void add_lamps(const SampleTarget& target, std::uint64_t stream, std::uint32_t count, double share, SampleMeans& sums) const;
 
   struct Particles {
     std::vector<double> in, out;  ///< [s][b]
@@ -183,8 +184,8 @@ void PathSampler::Impl::lamps_at(const Vec3& p, CopyFacet facet, const Vec3& n, 
 }
 
 template <class Way, class Hit, class Exit>
-void PathSampler::Impl::walk(Vec3 p, Vec3 n, Vec3 d, CopyFacet facet, double* weight, RandomStream& random, std::uint64_t& count,
-                             Way&& way, Hit&& hit, Exit&& exit) const {
+void PathSampler::Impl::walk(Vec3 p, Vec3 n, Vec3 d, CopyFacet facet, double* weight, RandomStream& random, std::uint64_t& count, Way&& way,
+                             Hit&& hit, Exit&& exit) const {
   for (int bounce = 0;; ++bounce) {
     ++count;
     const RayHit met = rays.first_hit(p, d, facet);
@@ -217,8 +218,8 @@ void PathSampler::Impl::walk(Vec3 p, Vec3 n, Vec3 d, CopyFacet facet, double* we
   }
 }
 
-void PathSampler::Impl::one_side(const Vec3& start, const Vec3& start_normal, const Vec3& direction, CopyFacet facet,
-                                 RandomStream& random, double* weight, double* sum, double* direct, std::uint64_t& count) const {
+void PathSampler::Impl::one_side(const Vec3& start, const Vec3& start_normal, const Vec3& direction, CopyFacet facet, RandomStream& random,
+                                 double* weight, double* sum, double* direct, std::uint64_t& count) const {
   std::fill_n(weight, bands, 1.0);
   walk(
       start, start_normal, direction, facet, weight, random, count,
@@ -240,7 +241,7 @@ void PathSampler::Impl::one_side(const Vec3& start, const Vec3& start_normal, co
       [&](int, CopyFacet f, const Vec3& p, const Vec3& n, bool on_front) {
         const auto m = material(f);
         if (lamps) {
-          double x[6];
+          double x[5];
           for (auto& value : x) value = random.next();
           lamps_at(p, f, n, 0.0, x, count, [&](std::size_t s, bool lamp_on_front, double factor, const std::vector<double>& strength) {
             const double* scatter = (lamp_on_front != on_front ? through.data() : on_front ? front.data() : back.data()) + m;
@@ -280,8 +281,7 @@ bool PathSampler::has_sun() const {
   return impl_->has_sun;
 }
 
-void PathSampler::Impl::add_paths(const SampleTarget& target, std::uint64_t stream, std::uint32_t count, std::uint32_t lamp_points,
-                                  SampleMeans& sums) const {
+void PathSampler::Impl::add_paths(const SampleTarget& target, std::uint64_t stream, std::uint32_t count, SampleMeans& sums) const {
   std::vector<double> here(states * 2 * bands), weight(bands);
   const auto scramble = static_cast<std::uint32_t>(stream);
   for (std::uint32_t i = 0; i < count; ++i) {
@@ -296,22 +296,6 @@ void PathSampler::Impl::add_paths(const SampleTarget& target, std::uint64_t stre
              sums.direct.data(), sums.rays);
     one_side(p, n, cosine_direction(-n, sobol_owen(i, 4, scramble), sobol_owen(i, 5, scramble)), facet, random, weight.data(),
              here.data() + bands, sums.direct.data() + bands, sums.rays);
-    if (lamps) {
-      const auto lamp_scramble = static_cast<std::uint32_t>(mix(stream, 0x6c616d70ULL));
-      for (std::uint32_t j = 0; j < lamp_points; ++j) {
-        double numbers[6];
-        for (unsigned k = 0; k < 6; ++k) numbers[k] = sobol_owen(i * lamp_points + j, k, lamp_scramble);
-        lamps_at(p, facet, n, 0.0, numbers, sums.rays,
-                 [&](std::size_t s, bool on_front, double factor, const std::vector<double>& strength) {
-                   const std::size_t side = 2 * s + (on_front ? 0 : 1);
-                   for (std::size_t b = 0; b < bands; ++b) {
-                     const double light = factor * strength[b] / lamp_points;
-                     here[side * bands + b] += light;
-                     sums.direct[side * bands + b] += light;
-                   }
-                 });
-      }
-    }
     for (std::size_t k = 0; k < here.size(); ++k) {
       sums.irradiance[k] += here[k];
       sums.absorbed[k / (2 * bands) * bands + k % bands] += absorptance(facet, k / bands % 2 == 0, k % bands) * here[k];
@@ -341,6 +325,29 @@ void PathSampler::Impl::add_sun(const SampleTarget& target, std::uint64_t stream
   }
 }
 
+/// Points and lamps from one sequence: coordinates of equal dimension from two scrambles of it would go together.
+void PathSampler::Impl::add_lamps(const SampleTarget& target, std::uint64_t stream, std::uint32_t count, double share,
+                                  SampleMeans& sums) const {
+  const auto scramble = static_cast<std::uint32_t>(mix(stream, 0x6c616d70ULL));
+  for (std::uint32_t i = 0; i < count; ++i) {
+    double x, numbers[5];
+    const CopyFacet facet = target.facet_at(sobol_owen(i, 0, scramble), x);
+    const double root = std::sqrt(x), y = sobol_owen(i, 1, scramble);
+    for (unsigned k = 0; k < 5; ++k) numbers[k] = sobol_owen(i, 2 + k, scramble);
+    const FacetPlane start = plane(facet);
+    lamps_at(start.point(root * (1.0 - y), root * y), facet, start.normal, 0.0, numbers, sums.rays,
+             [&](std::size_t s, bool on_front, double factor, const std::vector<double>& strength) {
+               const std::size_t side = 2 * s + (on_front ? 0 : 1);
+               for (std::size_t b = 0; b < bands; ++b) {
+                 const double light = share * factor * strength[b];
+                 sums.irradiance[side * bands + b] += light;
+                 sums.direct[side * bands + b] += light;
+                 sums.absorbed[s * bands + b] += absorptance(facet, on_front, b) * light;
+               }
+             });
+  }
+}
+
 void PathSampler::sample(const SampleTarget& target, std::uint32_t randomisation, std::uint32_t count, std::uint32_t sun_points,
                          SampleMeans& means) const {
   const Impl& my = *impl_;
@@ -351,7 +358,8 @@ void PathSampler::sample(const SampleTarget& target, std::uint32_t randomisation
   means.rays = 0;
   if (!(target.area() > 0.0) || count == 0) return;
   const std::uint64_t stream = mix(my.seed, target.key(), randomisation);
-  my.add_paths(target, stream, count, sun_points, means);
+  my.add_paths(target, stream, count, means);
+  if (my.lamps) my.add_lamps(target, stream, count * sun_points, 1.0 / sun_points, means);
   if (my.has_sun) my.add_sun(target, stream, count * sun_points, 1.0 / sun_points, means);
   for (auto* sums : {&means.irradiance, &means.direct, &means.absorbed, &means.sunlit})
     for (auto& value : *sums) value /= count;
@@ -383,9 +391,10 @@ void PathSampler::sample_patch(const Patch& patch, bool both, double lift, std::
                   });
     }
     if (my.lamps) {
-      double x[6];
-      for (unsigned k = 0; k < 6; ++k) x[k] = sobol_owen(i, k, lights);
-      my.lamps_at(p, nowhere, n, lift, x, rays, [&](std::size_t s, bool on_front, double factor, const std::vector<double>& strength) {
+      const Vec3 at = patch.point(sobol_owen(i, 0, lights), sobol_owen(i, 1, lights));
+      double x[5];
+      for (unsigned k = 0; k < 5; ++k) x[k] = sobol_owen(i, 2 + k, lights);
+      my.lamps_at(at, nowhere, n, lift, x, rays, [&](std::size_t s, bool on_front, double factor, const std::vector<double>& strength) {
         for (std::size_t b = 0; b < bands; ++b) here[(2 * s + (on_front ? 0 : 1)) * bands + b] += factor * strength[b];
       });
     }

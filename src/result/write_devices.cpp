@@ -20,7 +20,8 @@ class SensorWriter {
     const std::vector<std::size_t> dims{scene_.states.size(), reading.cells.size(), scene_.band_count()};
     const auto values = [&](const char* name, const std::vector<float>& data) {
       if (data.size() != dims[0] * dims[1] * dims[2])
-        throw Error(fmt::format("{}: sensor \"{}\" has {} values of {}", file_.path(), entry.name, data.size(), dims[0] * dims[1] * dims[2]));
+        throw Error(
+            fmt::format("{}: sensor \"{}\" has {} values of {}", file_.path(), entry.name, data.size(), dims[0] * dims[1] * dims[2]));
       for (const float v : data)
         if (!std::isfinite(v)) throw Error(fmt::format("{}: sensor \"{}\" has a value that is not finite", file_.path(), entry.name));
       arrays_.write_states(group.get(), name, data.data(), dims, "W m^-2");

@@ -48,7 +48,8 @@ void check_lamps(const Scene& scene) {
         fail(scene, strength + "." + scene.bands[b], fmt::format("{}", lamp.strength[b]), "a finite number of zero or more");
     if (lamp.photometry) {
       if (!lamp.by_power) fail(scene, key + ".exitance", "an exitance of a photometric file", "the power of the lamp");
-      if (!(lamp.photometry->per_candela > 0)) fail(scene, key + ".ies", "a photometry that is not prepared", "prepare_photometry() before");
+      if (!(lamp.photometry->per_candela > 0))
+        fail(scene, key + ".ies", "a photometry that is not prepared", "prepare_photometry() before");
     } else {
       check_mesh(lamp.mesh, location(scene.file, 0, key + ".mesh"));
       const double area = mesh_area(lamp.mesh);

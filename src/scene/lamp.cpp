@@ -102,8 +102,8 @@ LampEmission::Particle LampEmission::draw(const double* x) const {
     while (band + 1 < unit.power.size() && unit.power[band] == 0.0) ++band;
     const double part = unit.power[band] > 0.0 ? face.area * unit.exitance[band] / unit.power[band] : 0.0;
     const double root = std::sqrt(x[1]);
-    out.from = face.corners[0] + root * (1.0 - x[2]) * (face.corners[1] - face.corners[0]) +
-               root * x[2] * (face.corners[2] - face.corners[0]);
+    out.from =
+        face.corners[0] + root * (1.0 - x[2]) * (face.corners[1] - face.corners[0]) + root * x[2] * (face.corners[2] - face.corners[0]);
     Vec3 u, v;
     orthonormal_frame(face.normal, u, v);
     const double r = std::sqrt(x[3]), a = 2.0 * pi * x[4];

@@ -81,8 +81,9 @@ class Placing {
     // the last height is the first one at or above the top
     const double steps = std::ceil((high - low) / profile.step - 1e-9);
     constexpr double most = 100000;
-    if (!(steps < most)) fail("profile.step", fmt::format("{} m for heights from {} to {}", profile.step, low, high),
-                              fmt::format("a step that makes at most {} heights", most));
+    if (!(steps < most))
+      fail("profile.step", fmt::format("{} m for heights from {} to {}", profile.step, low, high),
+           fmt::format("a step that makes at most {} heights", most));
     for (int i = 0; i <= static_cast<int>(steps); ++i)
       cells.push_back({Vec3{e.x, e.y, low + i * profile.step}, Vec3{e.width, 0.0, 0.0}, Vec3{0.0, e.depth, 0.0}, false});
   }

@@ -67,14 +67,14 @@ void check_lamplight_ends(const Scene& scene, const RayScene& rays) {
         double x[5];
         for (auto& value : x) value = random.next();
         const auto particle = emission.draw(x);
-        if (!(particle.weight > 0.0) ||
-            !endless(rays, band, particle.from + clearance * particle.direction, particle.direction, random))
+        if (!(particle.weight > 0.0) || !endless(rays, band, particle.from + clearance * particle.direction, particle.direction, random))
           continue;
-        throw InputError(location(scene.file, 0, fmt::format("lamp[{}]", e)),
-                         fmt::format("light of band \"{}\" that never ends: in {} reflections it met nothing that absorbs, and no way out",
-                                     scene.bands[band], most_bounces),
-                         "reflectance + transmittance below 1 somewhere in the cavity that holds the lamp, or an opening: without, light grows "
-                         "without bound and there is no solution");
+        throw InputError(
+            location(scene.file, 0, fmt::format("lamp[{}]", e)),
+            fmt::format("light of band \"{}\" that never ends: in {} reflections it met nothing that absorbs, and no way out",
+                        scene.bands[band], most_bounces),
+            "reflectance + transmittance below 1 somewhere in the cavity that holds the lamp, or an opening: without, light grows "
+            "without bound and there is no solution");
       }
     }
   }

@@ -35,13 +35,16 @@ TEST_CASE("Photometric files cut short", "[hostile][ies]") {
 }
 
 TEST_CASE("Photometric files with numbers that cannot be", "[hostile][ies]") {
-  const auto with = [](const std::string& sizes, const std::string& rest) { return message(head + "1 1000 1 " + sizes + "\n1 1 100\n" + rest); };
+  const auto with = [](const std::string& sizes, const std::string& rest) {
+    return message(head + "1 1000 1 " + sizes + "\n1 1 100\n" + rest);
+  };
   CHECK(with("two 1 1 2 0 0 0", "") == "lamp.ies:4: found \"two\"; expected vertical angles");
   CHECK(with("1 1 1 2 0 0 0", "") == "lamp.ies:4: found 1 vertical angles; expected a whole number from 2 to 100000");
   CHECK(with("2.5 1 1 2 0 0 0", "") == "lamp.ies:4: found 2.5 vertical angles; expected a whole number from 2 to 100000");
   CHECK(with("2 -1 1 2 0 0 0", "") == "lamp.ies:4: found -1 horizontal angles; expected a whole number from 1 to 100000");
   CHECK(with("100000 100000 1 2 0 0 0", "") == "lamp.ies:4: found 100000 by 100000 angles; expected at most 10000000 intensities");
-  CHECK(with("2 1 2 2 0 0 0", "") == "lamp.ies:4: found photometry of type B; expected type C (1), which has its poles at nadir and zenith");
+  CHECK(with("2 1 2 2 0 0 0", "") ==
+        "lamp.ies:4: found photometry of type B; expected type C (1), which has its poles at nadir and zenith");
   CHECK(with("2 1 1 3 0 0 0", "") ==
         "lamp.ies:4: found 3 the unit of lengths, 1 (feet) or 2 (metres); expected a whole number from 1 to 2");
   CHECK(with("2 1 1 2 nan 0 0", "") == "lamp.ies:4: found \"nan\"; expected the width of the luminous opening, finite");
@@ -61,13 +64,16 @@ TEST_CASE("Photometric files as the editions of the standard have them", "[hosti
     return read_ies(file.path);
   };
   // 1986: no version, free text, numbers broken anywhere, commas; 2002: round opening by negative lengths, in feet
-  const auto old = read("A LAMP OF 1986\r\nTILT=INCLUDE\r\n1\r\n3\r\n0 45 90\r\n1 .9 .8\r\n1,1000,1,3,1\r\n1,1 -0.5 0 0\r\n1 1 100\r\n0 45\r\n90\r\n0\r\n9 6 0\r\n\x1a");
+  const auto old = read(
+      "A LAMP OF 1986\r\nTILT=INCLUDE\r\n1\r\n3\r\n0 45 90\r\n1 .9 .8\r\n1,1000,1,3,1\r\n1,1 -0.5 0 0\r\n1 1 100\r\n0 45\r\n90\r\n0\r\n9 6 "
+      "0\r\n\x1a");
   CHECK(old.vertical_deg == std::vector<double>{0, 45, 90});
   CHECK(old.candela == std::vector<double>{9, 6, 0});
   CHECK(old.round);
   CHECK(old.width_m == Approx(0.5 * 0.3048));
   CHECK(old.length_m == Approx(0.5 * 0.3048));
-  const auto recent = read("\xef\xbb\xbfIES:LM-63-2019\n[MANUFAC] none\nTILT = NONE\n1 -1 1 2 2 1 2 0.2 1.2 0\n1 1 40\n0 90\n0 90\n4 1\n2 1\n");
+  const auto recent =
+      read("\xef\xbb\xbfIES:LM-63-2019\n[MANUFAC] none\nTILT = NONE\n1 -1 1 2 2 1 2 0.2 1.2 0\n1 1 40\n0 90\n0 90\n4 1\n2 1\n");
   CHECK_FALSE(recent.round);
   CHECK(recent.width_m == 0.2);
   CHECK(recent.length_m == 1.2);

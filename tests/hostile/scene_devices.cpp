@@ -8,11 +8,10 @@ using namespace sunfleck;
 namespace {
 
 const std::string sky = "bands = [\"PAR\"]\n[sky]\nmodel = \"uniform\"\nirradiance = { PAR = 1 }\n";  // four lines
-const std::map<std::string, std::string> files{
-    {"down.obj", "v 0 0 2\nv 0 1 2\nv 1 1 2\nf 1 2 3\n"},
-    {"up.obj", "v 0 0 2\nv 0 1 2\nv 1 1 2\nf 1 3 2\n"},
-    {"flat.obj", "v 0 0 2\nv 0 1 2\nv 0 2 2\nf 1 2 3\n"},
-    {"lamp.ies", "TILT=NONE\n1 1000 1 2 1 1 2 0 0 0\n1 1 100\n0 90\n0\n1 0\n"}};
+const std::map<std::string, std::string> files{{"down.obj", "v 0 0 2\nv 0 1 2\nv 1 1 2\nf 1 2 3\n"},
+                                               {"up.obj", "v 0 0 2\nv 0 1 2\nv 1 1 2\nf 1 3 2\n"},
+                                               {"flat.obj", "v 0 0 2\nv 0 1 2\nv 0 2 2\nf 1 2 3\n"},
+                                               {"lamp.ies", "TILT=NONE\n1 1000 1 2 1 1 2 0 0 0\n1 1 100\n0 90\n0\n1 0\n"}};
 
 std::string lamp(const std::string& keys) {
   return SceneFiles(sky + "[[lamp]]\n" + keys, files).message();
@@ -24,7 +23,8 @@ std::string sensor(const std::string& keys) {
 }  // namespace
 
 TEST_CASE("A lamp has one shape and one strength", "[hostile][scene]") {
-  const std::string mesh = "mesh = \"down.obj\"\n", ies = "ies = \"lamp.ies\"\n", exitance = "exitance = { PAR = 1 }\n", power = "power = { PAR = 1 }\n";
+  const std::string mesh = "mesh = \"down.obj\"\n", ies = "ies = \"lamp.ies\"\n", exitance = "exitance = { PAR = 1 }\n",
+                    power = "power = { PAR = 1 }\n";
   CHECK(lamp(exitance) == "scene.toml:5: lamp[0]: found neither `mesh` nor `ies`; expected one of them");
   CHECK(lamp(mesh + ies + power) == "scene.toml:5: lamp[0]: found both `mesh` and `ies`; expected one of them");
   CHECK(lamp(mesh) == "scene.toml:5: lamp[0]: found neither `exitance` nor `power`; expected one of them per band");
@@ -35,8 +35,7 @@ TEST_CASE("A lamp has one shape and one strength", "[hostile][scene]") {
   CHECK(lamp(ies) == "scene.toml:5: lamp[0]: found no `power`; expected the power that the lamp gives off per band");
   CHECK(lamp(mesh + "exitance = { PAR = -1 }\n") == "scene.toml:7: lamp[0].exitance.PAR: found -1; expected a number of zero or more");
   CHECK(lamp(mesh + "exitance = { }\n") == "scene.toml:7: lamp[0].exitance.PAR: found nothing; expected a number: every band needs one");
-  CHECK(lamp("mesh = \"flat.obj\"\n" + exitance) ==
-        "scene.toml: lamp[0].mesh: found faces of 0 m2 in all; expected an area above zero");
+  CHECK(lamp("mesh = \"flat.obj\"\n" + exitance) == "scene.toml: lamp[0].mesh: found faces of 0 m2 in all; expected an area above zero");
   CHECK(lamp("mesh = \"none.obj\"\n" + exitance) ==
         "scene.toml:6: lamp[0].mesh: found no file \"none.obj\"; expected a mesh file (its path is relative to the scene file)");
   CHECK(lamp(ies + power) == "scene.toml:5: lamp[0].position: found nothing; expected [x, y, z] [m], or `place`, or `grid`");
@@ -58,8 +57,11 @@ TEST_CASE("A lamp that looks up is worth a note, and lamps are light enough", "[
   REQUIRE(up.read().notes.size() == 1);
   CHECK(up.read().notes[0].find("no face of this lamp looks down") != std::string::npos);
   CHECK(SceneFiles(bands + "[[lamp]]\nmesh = \"down.obj\"\nexitance = { PAR = 1 }\n", files).read().notes.empty());
-  const SceneFiles day(bands + "[[state]]\nname = \"day\"\nsky = { model = \"uniform\", irradiance = { PAR = 1 } }\n[[state]]\nname = \"night\"\n"
-                               "[[lamp]]\nmesh = \"down.obj\"\nexitance = { PAR = 1 }\nstates = [\"night\"]\n", files);
+  const SceneFiles day(
+      bands +
+          "[[state]]\nname = \"day\"\nsky = { model = \"uniform\", irradiance = { PAR = 1 } }\n[[state]]\nname = \"night\"\n"
+          "[[lamp]]\nmesh = \"down.obj\"\nexitance = { PAR = 1 }\nstates = [\"night\"]\n",
+      files);
   CHECK(day.read().lamps[0].states == std::vector<std::uint32_t>{1});
 }
 
@@ -79,7 +81,8 @@ TEST_CASE("A sensor has one shape and a name of its own", "[hostile][scene]") {
         "scene.toml:7: sensor[0].grid.cells[0]: found 0; expected a whole number from 1 to 30000");
   CHECK(sensor("name = \"a\"\ngrid = { z = 0, cells = [30000, 30000] }\n") ==
         "scene.toml: sensor[0].grid.cells: found 900000000 cells; expected at most 10000000");
-  CHECK(sensor("name = \"a\"\nprofile = { step = 0 }\n") == "scene.toml:7: sensor[0].profile.step: found 0; expected a number above zero metres");
+  CHECK(sensor("name = \"a\"\nprofile = { step = 0 }\n") ==
+        "scene.toml:7: sensor[0].profile.step: found 0; expected a number above zero metres");
   CHECK(sensor("name = \"a\"\nprofile = { step = 1, low = 2, high = 1 }\n") ==
         "scene.toml:7: sensor[0].profile.high: found 1, below `low`; expected a height not below `low` [m]");
   CHECK(sensor("name = \"a\"\nsides = \"both\"\nprofile = { step = 1 }\n") ==

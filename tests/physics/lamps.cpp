@@ -47,7 +47,8 @@ TEST_CASE("A disc over a point gives R^2 / (R^2 + h^2), also of many faces", "[p
     const auto run = solve(scene, RadiosityMethod::clustering);
     // a polygon has less area than its circle: 1.1 % for 24 corners; the view factor falls by about as much times 1 - F
     const double tolerance = 0.002 + (n == 24 ? 0.002 : 0.0);
-    CHECK(run.report.sensors[0].irradiance[0] == Approx(expected_circle * (1 - (1 - area_ratio) * (1 - expected_circle / 100))).epsilon(tolerance));
+    CHECK(run.report.sensors[0].irradiance[0] ==
+          Approx(expected_circle * (1 - (1 - area_ratio) * (1 - expected_circle / 100))).epsilon(tolerance));
   }
 }
 
@@ -115,8 +116,8 @@ TEST_CASE("Lamps under occlusion agree with path tracing, organ by organ", "[phy
         noise += std::pow(reference.facets.area[f], 2) * reference.kept.variance_of(f, b);
       noise = std::sqrt(noise / static_cast<double>(a.size())) / mean;
       const double rmse = std::sqrt(std::max(0.0, std::pow(relative_rms(a, r), 2) - noise * noise));
-      // fine aims at 1.2 % for sun and sky. Direct light of about 1700 rays a leaf, half of them in the shade: 1 %; scattered light of large
-      // leaves close to lamps: 1 to 3 %
+      // fine aims at 1.2 % for sun and sky. Direct light of about 1700 rays a leaf, half of them in the shade: 1 %; scattered light of
+      // large leaves close to lamps: 1 to 3 %
       CHECK(rmse < (b == 2 ? 0.02 : 0.04));
       CHECK(std::abs(bias) / mean < 0.01);
       const auto& balance = run.report.balance[0][b];
@@ -124,6 +125,22 @@ TEST_CASE("Lamps under occlusion agree with path tracing, organ by organ", "[phy
       CHECK(balance.incident == Approx(reference.report.balance[0][b].incident).epsilon(0.01));
     }
   }
+}
+
+TEST_CASE("The reference's noise from lamps falls with its samples", "[physics][lamps]") {
+  // half of the lamp is hidden from a part of the square: where the point lies and which point of the lamp is drawn must be independent
+  auto scene = scene_with({"PAR"}, {uniform_optics("black", {0.0}, {0.0})});
+  add(scene, "square", {square(0)}, 0);
+  add(scene, "screen", {panel(0.3, 0.2, 0.9, 0.7, 0.5)}, 0);
+  lamp(scene, panel(0, 0, 1, 1, 1), 500);
+  const auto variance = [&](std::uint32_t samples) {
+    const auto run = trace(scene, samples);
+    double sum = 0;
+    for (std::size_t f = 0; f < 2; ++f) sum += std::pow(run.facets.area[f], 2) * run.kept.variance_of(f, 0);
+    return sum;
+  };
+  // independent samples: 1/32, known from 16 randomisations to within a third or so
+  CHECK(variance(1 << 14) < variance(1 << 9) / 10);
 }
 
 TEST_CASE("A lamp's housing is a plant of the same mesh", "[physics][lamps]") {
@@ -157,15 +174,17 @@ TEST_CASE("States choose their lamps", "[physics][lamps]") {
 
 TEST_CASE("A closed white box with a lamp has no solution and is refused", "[physics][lamps]") {
   auto scene = scene_with({"PAR", "NIR"}, {uniform_optics("white", {0.5, 0.45}, {0.0, 0.55})});
-  const Mesh box{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}},
-                 {{0, 1, 2}, {0, 2, 3}, {4, 6, 5}, {4, 7, 6}, {0, 5, 1}, {0, 4, 5}, {1, 6, 2}, {1, 5, 6}, {2, 7, 3}, {2, 6, 7}, {3, 4, 0}, {3, 7, 4}}};
+  const Mesh box{
+      {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}},
+      {{0, 1, 2}, {0, 2, 3}, {4, 6, 5}, {4, 7, 6}, {0, 5, 1}, {0, 4, 5}, {1, 6, 2}, {1, 5, 6}, {2, 7, 3}, {2, 6, 7}, {3, 4, 0}, {3, 7, 4}}};
   add(scene, "box", {box}, 0);
   lamp(scene, panel(0.3, 0.3, 0.7, 0.7, 0.8), 100);
   // NIR passes the walls, and so ends
   CHECK_NOTHROW(solve(scene, RadiosityMethod::clustering, Quality::draft));
   scene.optics[0] = uniform_optics("white", {1.0, 0.5}, {0.0, 0.2});
   const char* const message =
-      "scene in memory: lamp[0]: found light of band \"PAR\" that never ends: in 100000 reflections it met nothing that absorbs, and no way "
+      "scene in memory: lamp[0]: found light of band \"PAR\" that never ends: in 100000 reflections it met nothing that absorbs, and no "
+      "way "
       "out; expected reflectance + transmittance below 1 somewhere in the cavity that holds the lamp, or an opening: without, light grows "
       "without bound and there is no solution";
   for (const auto method : both_methods) CHECK_THROWS_WITH(solve(scene, method, Quality::draft), message);

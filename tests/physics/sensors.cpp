@@ -121,6 +121,7 @@ TEST_CASE("The standard error of sensors is that of their rays", "[physics][sens
   int within = 0;
   const auto& e = run.report.sensors[0];
   for (std::size_t i = 0; i < e.irradiance.size(); ++i)
-    within += std::abs(e.irradiance[i] - truth.report.sensors[0].irradiance[i]) <= 2 * std::hypot(e.standard_error[i], truth.report.sensors[0].standard_error[i]);
+    within += std::abs(e.irradiance[i] - truth.report.sensors[0].irradiance[i]) <=
+              2 * std::hypot(e.standard_error[i], truth.report.sensors[0].standard_error[i]);
   CHECK(within >= static_cast<int>(0.8 * 128));
 }

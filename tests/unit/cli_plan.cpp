@@ -38,7 +38,8 @@ const PlanItem& item(const Plan& plan, const std::string& name) {
 
 TEST_CASE("what a scene does not have is left out, with the reason", "[cli][plan]") {
   const Plan plan = make_plan(one_triangle(), {"clustering", Quality::standard}, silent());
-  for (const char* name : {"states", "sun disc", "sky", "lamps", "sensors", "periodicity", "ground", "copies", "scattering", "transmission"}) {
+  for (const char* name :
+       {"states", "sun disc", "sky", "lamps", "sensors", "periodicity", "ground", "copies", "scattering", "transmission"}) {
     INFO(name);
     CHECK_FALSE(item(plan, name).done);
     CHECK_FALSE(item(plan, name).why.empty());
@@ -85,4 +86,9 @@ TEST_CASE("a scene with lamps or sensors is not left to instantiation, which kno
   const auto with_lamp = default_method(scene, Quality::draft, silent());
   CHECK(with_lamp.method == "clustering");
   CHECK(with_lamp.why == "instantiation knows no lamps");
+  // nor planned with it
+  CHECK_THROWS_WITH(
+      make_plan(scene, {"instantiation", Quality::draft}, silent()),
+      "scene in memory: lamp: found a lamp with method 'instantiation'; expected clustering, flat, direct or reference, which know "
+      "lamps and sensors");
 }

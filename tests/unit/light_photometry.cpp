@@ -52,7 +52,8 @@ TEST_CASE("A Lambertian table comes near cos / pi", "[light][photometry]") {
   std::vector<double> angles, values;
   for (int a = 0; a <= 90; ++a) angles.push_back(a), values.push_back(std::cos(a * pi / 180));
   const auto p = made(angles, {0}, values);
-  for (const double a : {0.0, 30.5, 60.0, 89.0}) CHECK(p.intensity(towards(a, 10)) == Approx(std::cos(a * pi / 180) / pi).epsilon(1e-3).margin(1e-5));
+  for (const double a : {0.0, 30.5, 60.0, 89.0})
+    CHECK(p.intensity(towards(a, 10)) == Approx(std::cos(a * pi / 180) / pi).epsilon(1e-3).margin(1e-5));
   CHECK(p.intensity(towards(91, 0)) == 0.0);  // beyond the table there is no light
 }
 
@@ -60,7 +61,8 @@ TEST_CASE("Every symmetry integrates to one and mirrors as it should", "[light][
   const std::vector<double> vertical{0, 60, 120};
   const auto quadrant = made(vertical, {0, 45, 90}, {3, 2, 0, 3, 4, 1, 3, 1, 0});
   CHECK(integral(quadrant) == Approx(1).epsilon(1e-3));
-  for (const double h : {20.0, 160.0, 200.0, 340.0}) CHECK(quadrant.intensity(towards(50, h)) == Approx(quadrant.intensity(towards(50, 20))));
+  for (const double h : {20.0, 160.0, 200.0, 340.0})
+    CHECK(quadrant.intensity(towards(50, h)) == Approx(quadrant.intensity(towards(50, 20))));
   const auto half = made(vertical, {0, 90, 180}, {3, 2, 0, 3, 4, 1, 3, 1, 0});
   CHECK(integral(half) == Approx(1).epsilon(1e-3));
   CHECK(half.intensity(towards(50, 130)) == Approx(half.intensity(towards(50, 230))));

@@ -31,6 +31,9 @@ struct InstantiationSettings : SolveSettings {
   InstantiationDensity density = instantiation_density(Quality::standard);
 };
 
+/// Throws InputError where a scene has what this method does not know: lamps, sensors.
+void check_instantiable(const Scene& scene);
+
 /// Solves E = E0 + F R E copy by copy. What is inside a copy is its original's line operator, traced once in the original's frame and
 /// shared; what differs from copy to copy are small fields, the radiance that enters and leaves per direction and pixel of a coarse
 /// grid over the original's silhouette (with one pixel: the phase function of Soler et al. 2003, doi:10.1145/636886.636893). Copies are

@@ -34,8 +34,8 @@ class LampLight {
   /// Values of on_patch(): [set][2][b].
   std::size_t values() const { return lamps_.sets.size() * 2 * bands_; }
 
-  /// Adds share x irradiance on front and back of the patch to out [set][2][b] [W m^-2], from `rays` points. `start`: the facet that the patch is a
-  /// piece of, or no_facet; `lift`: how far above either side shadow rays start [m].
+  /// Adds share x irradiance on front and back of the patch to out [set][2][b] [W m^-2], from `rays` points. `start`: the facet that the
+  /// patch is a piece of, or no_facet; `lift`: how far above either side shadow rays start [m].
   void on_patch(const Patch& patch, std::uint32_t start, double lift, std::uint32_t rays, std::uint64_t key, const Surroundings& scene,
                 double share, double* out) const;
 
@@ -51,9 +51,9 @@ class LampLight {
   const Lamps lamps_;
   const std::size_t bands_;
   const std::optional<PeriodicCell> cell_;
-  std::vector<double> cumulative_;   ///< power of faces, then beams, all bands in equal parts
-  std::vector<double> importance_;   ///< [faces, then beams] per view factor, or per intensity
-  Vec3 centre_{0.0};                 ///< of the lamps' power
+  std::vector<double> cumulative_;  ///< power of faces, then beams, all bands in equal parts
+  std::vector<double> importance_;  ///< [faces, then beams] per view factor, or per intensity
+  Vec3 centre_{0.0};                ///< of the lamps' power
 };
 
 }  // namespace sunfleck

@@ -25,7 +25,8 @@ struct RadiosityPlan {
   std::uint64_t line_fragments = 0;                    ///< the same, for scattered light
   std::uint64_t links = 0;
   std::uint64_t lamp_rays = 0, sensor_rays = 0;  ///< exact; 0 without lamps or sensors
-  /// Bytes: "elements", "direct", "tree of rays" and "lamps" (with lamps or sensors only), "links", "fields" as SolveReport::memory names them, and "lines", held only while links are made.
+  /// Bytes: "elements", "direct", "tree of rays" and "lamps" (with lamps or sensors only), "links", "fields" as SolveReport::memory names
+  /// them, and "lines", held only while links are made.
   std::vector<std::pair<std::string, std::uint64_t>> memory;
 };
 

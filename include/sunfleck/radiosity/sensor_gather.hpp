@@ -27,8 +27,8 @@ std::uint64_t sensor_rays(const Scene& scene, const Box& bounds, const SensorSet
 /// E = E_gathered + E_sun + E_lamps on each side of each cell. E_gathered is the mean over cosine-weighted directions from points of the
 /// cell: the sky's pi L where a ray leaves the scene, the radiosity of what it meets otherwise. Sun: shadow rays to points of its disc.
 /// Lamps: as on facets (LampLight). Eight independent randomisations give mean and standard error. Rays start a clearance above
-/// the side, so that a sensor that lies on the ground sees what the ground sees; sensors see neither each other nor lamps. Deterministic for any
-/// number of threads. Throws Stopped.
+/// the side, so that a sensor that lies on the ground sees what the ground sees; sensors see neither each other nor lamps. Deterministic
+/// for any number of threads. Throws Stopped.
 std::vector<SensorReading> read_sensors(const Scene& scene, const std::vector<PlacedSensor>& sensors, const LampLight& lamps,
                                         const Surroundings& surroundings, const SensorSettings& settings, Progress& progress);
 

@@ -32,7 +32,7 @@ struct LampEntry {
 struct Lamps {
   static constexpr std::uint32_t none = 0xffffffffu;
 
-  struct Unit {  ///< one copy of a lamp
+  struct Unit {                    ///< one copy of a lamp
     std::uint32_t entry;           ///< row of Scene::lamps
     std::vector<double> exitance;  ///< of its faces, per band [W m^-2]; empty with photometry
     std::vector<double> power;     ///< per band [W]
@@ -44,9 +44,9 @@ struct Lamps {
     std::uint32_t unit;
   };
   struct Beam {
-    Vec3 position;   ///< of the opening's centre [m]
-    Vec3 x, y;       ///< edges of the opening's rectangle, from side to side [m]; zero for a point
-    Mat3 to_lamp;    ///< world -> the lamp's frame, an orthogonal matrix
+    Vec3 position;  ///< of the opening's centre [m]
+    Vec3 x, y;      ///< edges of the opening's rectangle, from side to side [m]; zero for a point
+    Mat3 to_lamp;   ///< world -> the lamp's frame, an orthogonal matrix
     const Photometry* photometry;
     std::uint32_t unit;
     /// The point of the opening for (u, v) uniform in [0, 1)^2.

@@ -32,7 +32,7 @@ struct SensorProfile {
 struct SensorEntry {
   std::string name;
   std::variant<SensorGrid, SensorProfile, Mesh> shape;
-  bool both_sides = false;  ///< the back is measured too; always of a profile
+  bool both_sides = false;    ///< the back is measured too; always of a profile
   std::uint32_t samples = 0;  ///< rays per cell and side; 0 = the quality's own
 };
 
@@ -57,8 +57,8 @@ struct PlacedSensor {
   std::vector<Patch> cells;
 };
 
-/// Cells of all sensors. `bounds`: of everything in the scene with an area; may be empty. Throws InputError where a size or a range of heights
-/// is neither given nor to be had from the scene, or a profile would have more than 100000 heights.
+/// Cells of all sensors. `bounds`: of everything in the scene with an area; may be empty. Throws InputError where a size or a range of
+/// heights is neither given nor to be had from the scene, or a profile would have more than 100000 heights.
 std::vector<PlacedSensor> place_sensors(const Scene& scene, const Box& bounds);
 
 }  // namespace sunfleck
