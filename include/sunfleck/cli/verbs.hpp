@@ -1,4 +1,5 @@
-// One struct of options and one function per verb; program.cpp parses into the structs, verb_NAME.cpp does the work.
+// One struct of options and one function per verb; the command line is parsed into the structs (src/cli/options_*.cpp), verb_NAME.cpp does
+// the work.
 #pragma once
 
 #include <cstdint>

@@ -1,0 +1,79 @@
+#include "cli/options.hpp"
+#include "cli/validators.hpp"
+
+namespace sunfleck {
+
+namespace {
+
+constexpr const char* method_help =
+    "how scattered light is found: 'instantiation' (each plant once, its copies through it), 'clustering' (cluster tree and links), 'flat' "
+    "(every facet with every other it sees), 'direct' (no scattering) or 'reference' (path tracing); the default is what the scene file "
+    "says, "
+    "else instantiation where enough repeats and copies stand free of each other, else clustering";
+constexpr const char* quality_help = "accuracy against time: 'draft', 'standard' (the default) or 'fine'";
+const std::vector<std::string> qualities{"draft", "standard", "fine"};
+
+}  // namespace
+
+void define_solve(CLI::App& verb, SolveOptions& o) {
+  verb.add_option("SCENE", o.scene, "scene file, TOML")->required()->type_name("");
+  verb.add_option("-o,--output", o.result, "result to write, HDF5; replaced only when the new one is complete")
+      ->required()
+      ->type_name("RESULT.h5");
+  verb.add_option("--method", o.method, method_help)->type_name("NAME");
+  verb.add_option("--quality", o.quality, quality_help)->type_name("NAME")->check(one_of(qualities));
+  verb.add_option("--error", o.error,
+                  "wanted rms error of an organ's absorbed light, as a fraction of the mean (0.01 is 1 %): takes the cheapest quality "
+                  "that aims at it; the certificate tells what was reached")
+      ->type_name("FRACTION")
+      ->check(number_between(1e-4, 0.5));
+  verb.add_option("--samples", o.samples, "reference method only: paths per facet")->type_name("N")->check(count_from(16, 4294967295.0));
+  verb.add_option("--threads", o.threads, "threads to use; 0 is all cores. The result has the same bits for any number")
+      ->type_name("N")
+      ->check(count_from(0, 4096));
+  verb.add_option("--seed", o.seed, "seed of all sampling (default 1)")->type_name("N")->check(count_from(0));
+  verb.add_flag_callback(
+      "--no-certificate", [&o] { o.certificate = false; }, "skip the check of the result against path tracing; the result then says so");
+  verb.add_option("--certificate-organs", o.certificate_organs,
+                  "organs that the check path-traces (default 240): more of them narrow its interval")
+      ->type_name("N")
+      ->check(count_from(2, 1e6));
+  verb.add_option("--certificate-rays", o.certificate_rays,
+                  "rays that the check spends, about (default 0.6 to 2 million, by the size of the scene): more of them lessen its noise")
+      ->type_name("N")
+      ->check(count_from(1, 1e12));
+  verb.footer(
+      "The table on standard output holds, per lighting state and band, incident and absorbed light [W, or umol/s where the scene says "
+      "so],\n"
+      "the absorbed fraction, the albedo, the balance's residual and the certified error.\n\n"
+      "Exit codes: 0 done, 1 the result could not be written, 2 bad usage or input, 3 not converged (result written), 4 stopped.\n\n"
+      "Examples:\n"
+      "  sunfleck solve plants/stand.toml -o stand.h5\n"
+      "  sunfleck solve field.toml -o draft.h5 --quality draft --no-certificate\n"
+      "  sunfleck solve field.toml -o truth.h5 --method reference --samples 4096");
+}
+
+void define_plan(CLI::App& verb, PlanOptions& o) {
+  verb.add_option("SCENE", o.scene, "scene file, TOML")->required()->type_name("");
+  verb.add_option("--method", o.method, method_help)->type_name("NAME");
+  verb.add_option("--quality", o.quality, quality_help)->type_name("NAME")->check(one_of(qualities));
+  verb.add_flag("--json", o.json, "print JSON instead of text");
+  verb.footer(
+      "Examples:\n"
+      "  sunfleck plan field.toml\n"
+      "  sunfleck plan field.toml --quality fine --json");
+}
+
+void define_compare(CLI::App& verb, CompareOptions& o) {
+  verb.add_option("RESULT", o.result, "result to judge, HDF5")->required()->type_name("");
+  verb.add_option("REFERENCE", o.reference, "result to judge it by, HDF5; where it holds variances its own noise is taken out")
+      ->required()
+      ->type_name("");
+  verb.add_flag("--json", o.json, "print JSON instead of a table");
+  verb.footer(
+      "Both must be results of the same scene. Errors are of absorbed power per area, weighted by area, as fractions of the mean.\n\n"
+      "Example:\n"
+      "  sunfleck compare stand.h5 truth.h5");
+}
+
+}  // namespace sunfleck
