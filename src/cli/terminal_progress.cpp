@@ -1,7 +1,6 @@
 #include "cli/terminal_progress.hpp"
 
 #include <csignal>
-#include <cstdio>
 
 #include <sys/ioctl.h>
 #include <unistd.h>
@@ -10,6 +9,8 @@
 #include <string>
 
 #include <fmt/format.h>
+
+#include "cli/standard_streams.hpp"
 
 namespace sunfleck {
 
@@ -49,8 +50,7 @@ TerminalProgress::~TerminalProgress() {
 
 void TerminalProgress::line(std::string_view text) {
   clear_bar();
-  fmt::print(stderr, "{}\n", text);
-  std::fflush(stderr);
+  tell(fmt::format("{}\n", text));
 }
 
 void TerminalProgress::fraction(std::string_view phase, double done) {
@@ -64,9 +64,8 @@ void TerminalProgress::fraction(std::string_view phase, double done) {
   const double part = std::clamp(done, 0.0, 1.0);
   const int filled = static_cast<int>(part * width);
   const std::string left = time_left(std::chrono::duration<double>(now - phase_began_).count(), part);
-  fmt::print(stderr, "\r\033[K{} [{}{}] {:3.0f} %{}{}", phase, std::string(static_cast<std::size_t>(filled), '#'),
-             std::string(static_cast<std::size_t>(width - filled), '.'), 100.0 * part, left.empty() ? "" : ", ", left);
-  std::fflush(stderr);
+  tell(fmt::format("\r\033[K{} [{}{}] {:3.0f} %{}{}", phase, std::string(static_cast<std::size_t>(filled), '#'),
+                   std::string(static_cast<std::size_t>(width - filled), '.'), 100.0 * part, left.empty() ? "" : ", ", left));
   bar_shown_ = true;
 }
 
@@ -85,8 +84,7 @@ bool TerminalProgress::cancelled() const {
 
 void TerminalProgress::clear_bar() {
   if (!bar_shown_) return;
-  std::fputs("\r\033[K", stderr);
-  std::fflush(stderr);
+  tell("\r\033[K");
   bar_shown_ = false;
 }
 

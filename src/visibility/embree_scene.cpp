@@ -26,7 +26,8 @@ EmbreeScenePointer EmbreeDevice::new_scene(RTCSceneFlags flags) const {
 void EmbreeDevice::check(const std::string& what) const {
   const auto error = rtcGetDeviceError(device_.get());
   if (error == RTC_ERROR_OUT_OF_MEMORY) throw Error("not enough memory for the rays' tree over " + what);
-  if (error != RTC_ERROR_NONE) throw Error(fmt::format("Embree could not build its tree over {} (error {})", what, static_cast<int>(error)));
+  if (error != RTC_ERROR_NONE)
+    throw Error(fmt::format("Embree could not build its tree over {} (error {})", what, static_cast<int>(error)));
 }
 
 std::size_t EmbreeDevice::bytes() const {
@@ -35,10 +36,10 @@ std::size_t EmbreeDevice::bytes() const {
 
 EmbreeTriangles::EmbreeTriangles(const EmbreeDevice& device, std::size_t count)
     : geometry_(rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_TRIANGLE)),
-      vertices_(static_cast<float*>(rtcSetNewGeometryBuffer(geometry_.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                                            3 * sizeof(float), 3 * count))),
-      indices_(static_cast<unsigned*>(rtcSetNewGeometryBuffer(geometry_.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                                              3 * sizeof(unsigned), count))) {
+      vertices_(static_cast<float*>(
+          rtcSetNewGeometryBuffer(geometry_.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), 3 * count))),
+      indices_(static_cast<unsigned*>(
+          rtcSetNewGeometryBuffer(geometry_.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned), count))) {
   if (!vertices_ || !indices_) throw Error(fmt::format("not enough memory for the rays' geometry of {} facets", count));
 }
 

@@ -55,7 +55,8 @@ class EmbreeTriangles {
   /// From any number of threads. What is not `met` has a place, but no ray meets it.
   void set(std::size_t triangle, const Triangle& corners, bool met = true) {
     for (std::size_t k = 0; k < 3; ++k) {
-      for (int axis = 0; axis < 3; ++axis) vertices_[9 * triangle + 3 * k + static_cast<std::size_t>(axis)] = static_cast<float>(corners[k][axis]);
+      for (int axis = 0; axis < 3; ++axis)
+        vertices_[9 * triangle + 3 * k + static_cast<std::size_t>(axis)] = static_cast<float>(corners[k][axis]);
       indices_[3 * triangle + k] = static_cast<unsigned>(3 * triangle + (met ? k : 0));  // one corner three times: no area
     }
   }

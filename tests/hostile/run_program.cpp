@@ -31,12 +31,21 @@ ProgramRun run_sunfleck(const std::vector<std::string>& arguments, const Program
   if (child < 0) throw std::runtime_error("fork failed");
   if (child == 0) {
     dup2(open("/dev/null", O_RDONLY), STDIN_FILENO);
-    dup2(open(out.c_str(), O_WRONLY | O_CREAT, 0600), STDOUT_FILENO);
-    dup2(open(err.c_str(), O_WRONLY | O_CREAT, 0600), STDERR_FILENO);
+    const auto redirect = [](const std::string& file, int stream) {
+      if (file == "closed") {
+        close(stream);
+        return;
+      }
+      const int opened = open(file.c_str(), O_WRONLY | O_CREAT, 0600);
+      if (opened == stream) return;
+      dup2(opened, stream);
+      close(opened);  // else it would stay where another stream is to be closed
+    };
+    redirect(fate.out.empty() ? out : fate.out, STDOUT_FILENO);
+    redirect(fate.err.empty() ? err : fate.err, STDERR_FILENO);
     if (fate.disk_bytes > 0) {
       const rlimit limit{fate.disk_bytes, fate.disk_bytes};
       setrlimit(RLIMIT_FSIZE, &limit);
-      signal(SIGXFSZ, SIG_IGN);  // writes fail with EFBIG instead
     }
     execv(SUNFLECK_PROGRAM, argv.data());
     _exit(127);
