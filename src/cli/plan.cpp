@@ -155,6 +155,14 @@ void add_certificate(const Scene& scene, const std::string& method, std::vector<
 /// solve.
 constexpr std::uint64_t most_laid_out = 20'000'000;
 
+using PartNames = std::vector<std::pair<std::string, std::string>>;  ///< a part as solvers name it, and for people
+
+void add_memory(const std::vector<std::pair<std::string, std::uint64_t>>& predicted, const PartNames& names, Plan& plan) {
+  for (const auto& [part, bytes] : predicted)
+    for (const auto& [name, text] : names)
+      if (name == part) plan.memory.emplace_back(text, bytes);
+}
+
 /// Originals, their operators, and what copies hold.
 void add_instantiation(const Scene& scene, const MethodChoice& choice, Progress& progress, Plan& plan) {
   const PlacedScene placed = place(scene);
@@ -170,14 +178,12 @@ void add_instantiation(const Scene& scene, const MethodChoice& choice, Progress&
          fmt::format("{} that reach into each other are solved together", counted(predicted.merged_copies, "copy", "copies"))});
   else
     plan.items.push_back({"overlap", false, "no copies reach so far into each other that they must be solved together"});
-  static const std::vector<std::pair<std::string, std::string>> names{{"originals", "originals and their operators"},
-                                                                      {"sun", "sunlit fractions of all cells"},
-                                                                      {"rays", "rays between copies"},
-                                                                      {"fields", "fields of light between copies"},
-                                                                      {"fine", "operator of the original being opened"}};
-  for (const auto& [part, bytes] : predicted.memory)
-    for (const auto& [name, text] : names)
-      if (name == part) plan.memory.emplace_back(text, bytes);
+  static const PartNames names{{"originals", "originals and their operators"},
+                               {"sun", "sunlit fractions of all cells"},
+                               {"rays", "rays between copies"},
+                               {"fields", "fields of light between copies"},
+                               {"fine", "operator of the original being opened"}};
+  add_memory(predicted.memory, names, plan);
   plan.work.emplace_back("elements of originals", predicted.elements);
   plan.work.emplace_back("links of originals", predicted.links);
   plan.work.emplace_back("copies opened", predicted.copies);
@@ -202,16 +208,14 @@ void add_radiosity(const Scene& scene, const MethodChoice& choice, Progress& pro
     return;
   }
   const auto predicted = plan_radiosity(scene, facets, settings, progress);
-  static const std::vector<std::pair<std::string, std::string>> names{{"elements", "elements and cells"},
-                                                                      {"direct", "direct light on every cell"},
-                                                                      {"tree of rays", "tree of rays, for lamps and sensors"},
-                                                                      {"lamps", "light of lamps on every cell"},
-                                                                      {"links", "links and clusters"},
-                                                                      {"fields", "light on elements, iteration"},
-                                                                      {"lines", "lines, until they are links"}};
-  for (const auto& [part, bytes] : predicted.memory)
-    for (const auto& [name, text] : names)
-      if (name == part) plan.memory.emplace_back(text, bytes);
+  static const PartNames names{{"elements", "elements and cells"},
+                               {"direct", "direct light on every cell"},
+                               {"tree of rays", "tree of rays, for lamps and sensors"},
+                               {"lamps", "light of lamps on every cell"},
+                               {"links", "links and clusters"},
+                               {"fields", "light on elements, iteration"},
+                               {"lines", "lines, until they are links"}};
+  add_memory(predicted.memory, names, plan);
   plan.work.emplace_back("cells, with direct light", predicted.cells);
   plan.work.emplace_back("elements, with scattered light", predicted.elements);
   if (predicted.sky_fragments > 0) plan.work.emplace_back("lines meet surfaces, sky", predicted.sky_fragments);

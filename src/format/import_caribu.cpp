@@ -32,6 +32,18 @@ struct OptFile {
   std::vector<Species> species;
 };
 
+/// Calls visit(words, number) for each line of a text file.
+template <class Visit>
+void each_line(const std::string& file, Visit&& visit) {
+  check_readable(file);
+  const std::string text = read_whole(file);
+  Lines lines(text);
+  for (std::string_view line; lines.next(line);) {
+    Words words(line);
+    visit(words, lines.number());
+  }
+}
+
 class OptReader {
  public:
   explicit OptReader(const std::string& file) : file_(file) {
@@ -43,16 +55,11 @@ class OptReader {
   }
 
   OptFile read() {
-    check_readable(file_);
-    const std::string text = read_whole(file_);
-    Lines lines(text);
-    std::string_view line;
     std::int64_t promised = -1;
-    while (lines.next(line)) {
-      line_ = lines.number();
-      Words words(line);
+    each_line(file_, [&](Words& words, long number) {
+      line_ = number;
       const std::string_view key = words.next();
-      if (key.empty() || key[0] == '#') continue;
+      if (key.empty() || key[0] == '#') return;
       if (key[0] == 'n') {
         if (!to_integer(words.next(), promised) || promised < 1) fail("n without a number of species", "\"n 2\"");
       } else if (key[0] == 's') {
@@ -64,7 +71,7 @@ class OptReader {
       } else {
         fail(in_quotes(key), "n, s or e, or a comment \"# ...\"");
       }
-    }
+    });
     line_ = 0;
     if (out_.species.empty()) fail("no species", "lines \"e d RHO  d RHO TAU  d RHO TAU\"");
     if (promised >= 0 && static_cast<std::size_t>(promised) != out_.species.size())
@@ -107,47 +114,36 @@ class OptReader {
 };
 
 std::vector<LightDirection> read_light(const std::string& file) {
-  check_readable(file);
-  const std::string text = read_whole(file);
-  Lines lines(text);
   std::vector<LightDirection> out;
-  std::string_view line;
-  while (lines.next(line)) {
-    Words words(line);
+  each_line(file, [&](Words& words, long number) {
     const auto first = words.next();
-    if (first.empty() || first[0] == '#') continue;
-    const auto where = location(file, lines.number());
+    if (first.empty() || first[0] == '#') return;
+    const auto where = location(file, number);
     double energy = 0;
     if (!to_number(first, energy) || !std::isfinite(energy) || energy < 0)
       throw InputError(where, fmt::format("energy {}", in_quotes(first)),
                        "a number that is not negative: irradiance of a horizontal plane");
-    const Vec3 v = read_point(words, file, lines.number(), "a direction");
+    const Vec3 v = read_point(words, file, number, "a direction");
     if (!words.rest().empty()) throw InputError(where, in_quotes(words.rest()), "four numbers: energy and direction");
     const double length = glm::length(v);
     if (!(length > 0) || !(v.z < 0))
       throw InputError(where, fmt::format("direction {} {} {}", v.x, v.y, v.z), "one that goes down (z below 0)");
-    if (energy > 0) out.push_back({energy, -v / length, lines.number()});
-  }
+    if (energy > 0) out.push_back({energy, -v / length, number});
+  });
   if (out.empty()) throw InputError(file, "no light", "lines \"ENERGY VX VY VZ\" with an energy above zero");
   return out;
 }
 
 /// xmin, ymin, xmax, ymax in the file's unit.
 std::array<double, 4> read_pattern(const std::string& file) {
-  check_readable(file);
-  const std::string text = read_whole(file);
-  Lines lines(text);
   std::vector<double> values;
-  std::string_view line;
-  while (lines.next(line)) {
-    Words words(line);
+  each_line(file, [&](Words& words, long number) {
     for (auto word = words.next(); !word.empty() && word[0] != '#'; word = words.next()) {
       double value = 0;
-      if (!to_number(word, value) || !std::isfinite(value))
-        throw InputError(location(file, lines.number()), in_quotes(word), "a finite number");
+      if (!to_number(word, value) || !std::isfinite(value)) throw InputError(location(file, number), in_quotes(word), "a finite number");
       values.push_back(value);
     }
-  }
+  });
   if (values.size() != 4) throw InputError(file, fmt::format("{} numbers", values.size()), "four: xmin ymin, and below xmax ymax");
   if (!(values[2] > values[0]) || !(values[3] > values[1]))
     throw InputError(file, fmt::format("{} {} to {} {}", values[0], values[1], values[2], values[3]),

@@ -1,5 +1,6 @@
 #include "fuzz/formats.hpp"
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -9,6 +10,7 @@
 #include <unistd.h>
 
 #include <sunfleck/core/error.hpp>
+#include <sunfleck/format/ies.hpp>
 #include <sunfleck/format/import_scene.hpp>
 #include <sunfleck/format/read_plant.hpp>
 #include <sunfleck/format/scene_toml.hpp>
@@ -37,6 +39,7 @@ class Folder {
     put("leaf.obj", "g Leaf\nusemtl green\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     put("positions.csv", "x,y\n0,0\n2,1\n");
     put("field.can", "p 1 100001000000 3 0 0 50 10 0 50 0 10 50\n");
+    put("lamp.ies", "TILT=NONE\n1 1000 1 2 1 1 2 0 0 0\n1 1 100\n0 90\n0\n1 0\n");
     put("par.opt", "s d 0.15\ne d 0.10 d 0.11 0.05 d 0.12 0.05\n");
   }
   ~Folder() {
@@ -80,6 +83,13 @@ void read_plant_as(const char* name, Bytes bytes) {
   check_plant(plant);  // what a reader lets through is sound
 }
 
+/// What a photometric file lets through shines finitely, whatever the direction.
+void read_lamp(Bytes bytes) {
+  const Photometry lamp = read_ies(folder().put("lamp.ies", bytes));
+  for (const Vec3& d : {Vec3{0, 0, -1}, Vec3{0, 0, 1}, Vec3{1, 0, 0}, Vec3{0, -1, 0}, Vec3{-0.6, 0, -0.8}, Vec3{0.48, 0.64, 0.6}})
+    if (const double i = lamp.intensity(d); !(i >= 0) || !std::isfinite(i)) throw std::logic_error("a lamp that shines without measure");
+}
+
 void read_and_write_policy(Bytes bytes) {
   const std::string text = policy_text(read_policy(folder().put("policy.toml", bytes)));
   try {
@@ -115,6 +125,7 @@ const std::map<std::string, std::function<void(Bytes)>>& readers() {
              "[[plant]]\nname = \"leaf\"\nfile = \"leaf.obj\"\noptics = { \"*\" = \"leaf\" }\nplace = [ { file = \"fuzzed.csv\" } ]\n");
          check_scene(read_scene(scene));
        }},
+      {"ies", [](Bytes b) { read_lamp(b); }},
       {"light",
        [](Bytes b) {
          import_with({folder().file("field.can"), folder().file("par.opt"), folder().put("fuzzed.light", b)});
