@@ -36,17 +36,11 @@ std::vector<SampleTarget> targets_of(const FacetRows& rows, const RayScene& rays
   return targets;
 }
 
-/// Path-traced means of an organ and the variance of their mean, for absorbed and irradiance (front + back) per area.
-struct Measured {
-  std::vector<double> absorbed, absorbed_variance, irradiance, irradiance_variance;  ///< [s][b]
-  std::uint64_t rays = 0;
-};
-
-Measured measure(const PathSampler& sampler, const SampleTarget& target, std::uint32_t count) {
+TracedLight measure(const PathSampler& sampler, const SampleTarget& target, std::uint32_t count) {
   constexpr double n = reference_randomisations;
   const std::size_t bands = sampler.bands(), size = sampler.states() * bands;
   std::vector<SampleMeans> parts(reference_randomisations);
-  Measured out;
+  TracedLight out;
   for (std::uint32_t r = 0; r < reference_randomisations; ++r) {
     sampler.sample(target, r, count, sun_points, parts[r]);
     out.rays += parts[r].rays;
@@ -76,7 +70,7 @@ double solved_per_area(const OrganTotals& solved, std::size_t s, std::size_t k, 
 
 /// `place` [k] says where the chosen ones are among those of `solved`.
 void estimate_band(std::size_t b, const OrganTotals& solved, const std::vector<ChosenOrgan>& chosen, const std::vector<std::size_t>& place,
-                   const std::vector<Measured>& measured, bool irradiance, Certificate& out) {
+                   const std::vector<TracedLight>& measured, bool irradiance, Certificate& out) {
   constexpr double freedom = reference_randomisations - 1.0;
   const double states = static_cast<double>(solved.states);
   std::vector<OrganError> errors;
@@ -108,58 +102,67 @@ void estimate_band(std::size_t b, const OrganTotals& solved, const std::vector<C
   out.rmse_high.push_back(relative(estimate.high));
   out.bias.push_back(relative(estimate.bias));
   out.bias_standard_error.push_back(relative(estimate.bias_standard_error));
+  out.square_standard_error.push_back(relative(relative(estimate.square_standard_error)));
 }
 
 }  // namespace
 
-Certificate certify(const Scene& scene, const FacetRows& rows, const RayScene& rays, const std::vector<ChosenOrgan>& candidates,
-                    const OrganTotals& solved, const std::vector<std::vector<Balance>>& balance, const CertificateSettings& settings,
-                    Progress& progress) {
-  if (solved.organs.size() != candidates.size()) throw Error("certificate: the solved light of other organs than those chosen");
-  Certificate out;
+TracedOrgans trace_organs(const Scene& scene, const FacetRows& rows, const RayScene& rays, const std::vector<ChosenOrgan>& candidates,
+                          const CertificateSettings& settings, Progress& progress) {
+  TracedOrgans out;
   out.seed = settings.seed;
+  auto& chosen = out.chosen;
+  auto& measured = out.light;
+  chosen = candidates;
+  if (chosen.empty()) return out;
   tbb::task_arena arena(settings.threads > 0 ? settings.threads : tbb::task_arena::automatic);
   const PathSampler sampler(scene, rays, certificate_seed(settings));
   progress.check();
 
-  auto chosen = candidates;
-  std::vector<Measured> measured;
-  if (!chosen.empty()) {
-    // What a sample costs: one of each randomisation on a few organs. Counted in rays, so the same everywhere.
-    auto targets = targets_of(rows, rays, chosen);
-    const std::size_t pilots = std::min<std::size_t>(16, targets.size());
-    std::vector<std::uint64_t> cost(pilots);
-    arena.execute([&] {
-      tbb::parallel_for(std::size_t{0}, pilots,
-                        [&](std::size_t p) { cost[p] = measure(sampler, targets[p * targets.size() / pilots], 1).rays; });
-    });
-    std::uint64_t pilot_rays = 0;
-    for (const auto c : cost) pilot_rays += c;
-    out.rays += pilot_rays;
-    const double per_pass = std::max(1.0, static_cast<double>(pilot_rays) / static_cast<double>(pilots));  // 16 samples of one organ
-    const double passes = static_cast<double>(settings.rays > 0 ? settings.rays : rays_for(rows.placed().facets)) / per_pass;
-    const std::size_t affordable = std::max<std::size_t>(64, static_cast<std::size_t>(passes));
-    if (affordable < chosen.size()) {
-      chosen = choose_fewer(chosen, static_cast<std::uint32_t>(affordable), settings);
-      targets = targets_of(rows, rays, chosen);
-    }
-    const auto count = static_cast<std::uint32_t>(std::clamp(passes / static_cast<double>(chosen.size()), 1.0, 65536.0));
-    measured.resize(chosen.size());
-    constexpr std::size_t block = 16;  // organs between two questions whether to stop
-    for (std::size_t first = 0; first < chosen.size(); first += block) {
-      progress.check();
-      progress.fraction("certificate", static_cast<double>(first) / static_cast<double>(chosen.size()));
-      const std::size_t last = std::min(first + block, chosen.size());
-      arena.execute([&] { tbb::parallel_for(first, last, [&](std::size_t k) { measured[k] = measure(sampler, targets[k], count); }); });
-    }
-    progress.fraction("certificate", 1.0);
+  // What a sample costs: one of each randomisation on a few organs. Counted in rays, so the same everywhere.
+  auto targets = targets_of(rows, rays, chosen);
+  const std::size_t pilots = std::min<std::size_t>(16, targets.size());
+  std::vector<std::uint64_t> cost(pilots);
+  arena.execute([&] {
+    tbb::parallel_for(std::size_t{0}, pilots,
+                      [&](std::size_t p) { cost[p] = measure(sampler, targets[p * targets.size() / pilots], 1).rays; });
+  });
+  std::uint64_t pilot_rays = 0;
+  for (const auto c : cost) pilot_rays += c;
+  out.rays += pilot_rays;
+  const double per_pass = std::max(1.0, static_cast<double>(pilot_rays) / static_cast<double>(pilots));  // 16 samples of one organ
+  const double passes = static_cast<double>(settings.rays > 0 ? settings.rays : rays_for(rows.placed().facets)) / per_pass;
+  const std::size_t affordable = std::max<std::size_t>(64, static_cast<std::size_t>(passes));
+  if (affordable < chosen.size()) {
+    chosen = choose_fewer(chosen, static_cast<std::uint32_t>(affordable), settings);
+    targets = targets_of(rows, rays, chosen);
   }
+  const auto count = static_cast<std::uint32_t>(std::clamp(passes / static_cast<double>(chosen.size()), 1.0, 65536.0));
+  measured.resize(chosen.size());
+  constexpr std::size_t block = 16;  // organs between two questions whether to stop
+  for (std::size_t first = 0; first < chosen.size(); first += block) {
+    progress.check();
+    progress.fraction("certificate", static_cast<double>(first) / static_cast<double>(chosen.size()));
+    const std::size_t last = std::min(first + block, chosen.size());
+    arena.execute([&] { tbb::parallel_for(first, last, [&](std::size_t k) { measured[k] = measure(sampler, targets[k], count); }); });
+  }
+  progress.fraction("certificate", 1.0);
+  for (const auto& m : measured) out.rays += m.rays;
+  return out;
+}
 
+Certificate judge(const TracedOrgans& traced, const OrganTotals& solved, const std::vector<std::vector<Balance>>& balance) {
+  const auto& chosen = traced.chosen;
+  const auto& measured = traced.light;
+  Certificate out;
+  out.seed = traced.seed;
+  out.rays = traced.rays;
   std::vector<std::size_t> place;  // among those whose light was kept
   for (const auto& c : chosen) {
     out.organs.push_back(c.organ);
-    place.push_back(
-        static_cast<std::size_t>(std::lower_bound(solved.organs.begin(), solved.organs.end(), c.organ) - solved.organs.begin()));
+    const auto at = std::lower_bound(solved.organs.begin(), solved.organs.end(), c.organ);
+    if (at == solved.organs.end() || *at != c.organ) throw Error("certificate: the solved light of other organs than those traced");
+    place.push_back(static_cast<std::size_t>(at - solved.organs.begin()));
   }
   for (std::size_t s = 0; s < solved.states; ++s)
     for (std::size_t k = 0; k < chosen.size(); ++k)
@@ -169,13 +172,19 @@ Certificate certify(const Scene& scene, const FacetRows& rows, const RayScene& r
         out.reference.push_back(static_cast<float>(area * measured[k].absorbed[s * solved.bands + b]));
         out.standard_error.push_back(static_cast<float>(area * std::sqrt(measured[k].absorbed_variance[s * solved.bands + b])));
       }
-  for (const auto& m : measured) out.rays += m.rays;
   for (std::size_t b = 0; b < solved.bands; ++b) {
     double leaves = 0.0, incident = 0.0;
     for (const auto& state : balance) leaves += state[b].leaves, incident += state[b].incident;
     estimate_band(b, solved, chosen, place, measured, incident > 0.0 && leaves < least_absorbed * incident, out);
   }
   return out;
+}
+
+Certificate certify(const Scene& scene, const FacetRows& rows, const RayScene& rays, const std::vector<ChosenOrgan>& chosen,
+                    const OrganTotals& solved, const std::vector<std::vector<Balance>>& balance, const CertificateSettings& settings,
+                    Progress& progress) {
+  if (solved.organs.size() != chosen.size()) throw Error("certificate: the solved light of other organs than those chosen");
+  return judge(trace_organs(scene, rows, rays, chosen, settings, progress), solved, balance);
 }
 
 }  // namespace sunfleck

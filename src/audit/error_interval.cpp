@@ -48,7 +48,7 @@ ErrorEstimate estimate_error(std::span<const OrganError> organs) {
   const double johnson = square.variance > 0.0 ? (1.0 + 2.0 * z * z) * square.skew / (6.0 * square.variance) : 0.0;
   const double high = q + step + std::max(log_normal, johnson);
   const double low = std::max(0.0, q - step);
-  return {std::sqrt(q), std::sqrt(low), std::sqrt(high), bias.value, std::sqrt(bias.variance)};
+  return {std::sqrt(q), std::sqrt(low), std::sqrt(high), std::sqrt(square.variance), bias.value, std::sqrt(bias.variance)};
 }
 
 }  // namespace sunfleck

@@ -17,16 +17,10 @@ namespace {
 
 const std::vector<std::string> methods{"instantiation", "clustering", "flat", "direct", "reference"};
 
-/// What the densities of each quality were chosen for: rms error over organs in the near infrared, the worst band, on a canopy of
-/// leaves, coffee and wheat. An aim, not a bound: docs/accuracy.md tells what is reached where.
-struct Aim {
-  Quality quality;
-  double error;
-};
 /// Mean share of lines inside copies that meet another one, above which the instantiation's error exceeds the clustering's.
 constexpr double most_tangled = 0.01;
 
-constexpr std::array<Aim, 3> aims{{{Quality::draft, 0.06}, {Quality::standard, 0.02}, {Quality::fine, 0.012}}};
+constexpr std::array<Quality, 3> qualities{Quality::draft, Quality::standard, Quality::fine};
 
 std::string checked_method(const std::string& name) {
   for (const auto& known : methods)
@@ -36,16 +30,9 @@ std::string checked_method(const std::string& name) {
                                near.empty() ? "" : " (did you mean '" + near + "'?)"));
 }
 
-Quality quality_for_error(double error) {
-  for (const auto& [quality, aim] : aims)
-    if (aim <= error) return quality;
-  throw UsageError(
-      fmt::format("--error: found {}; expected at least {}, what 'fine' aims at (for less: --method reference)", error, aims.back().error));
-}
-
 Quality quality_from_name(const std::string& name) {
-  for (const auto& known : aims)
-    if (name == name_of(known.quality)) return known.quality;
+  for (const auto known : qualities)
+    if (name == name_of(known)) return known;
   throw UsageError(fmt::format("--quality: found '{}'; expected one of draft, standard, fine", name));
 }
 
@@ -63,14 +50,11 @@ std::string name_of(Quality quality) {
   return {};
 }
 
-MethodChoice choose_method(const std::optional<std::string>& method, const std::optional<std::string>& quality,
-                           const std::optional<double>& error, const SolveChoice& scene) {
+MethodChoice choose_method(const std::optional<std::string>& method, const std::optional<std::string>& quality, const SolveChoice& scene) {
   MethodChoice choice;
   choice.method = checked_method(method ? *method : scene.method.value_or("clustering"));
   if (quality)
     choice.quality = quality_from_name(*quality);
-  else if (error)
-    choice.quality = quality_for_error(*error);
   else
     choice.quality = scene.quality.value_or(Quality::standard);
   return choice;
@@ -91,9 +75,9 @@ MethodReason default_method(const Scene& scene, Quality quality, Progress& progr
                                        plan.originals == 1 ? "original" : "originals")};
 }
 
-MethodChoice choose_method(const std::optional<std::string>& method, const std::optional<std::string>& quality,
-                           const std::optional<double>& error, const Scene& scene, Progress& progress) {
-  auto choice = choose_method(method, quality, error, scene.solve);
+MethodChoice choose_method(const std::optional<std::string>& method, const std::optional<std::string>& quality, const Scene& scene,
+                           Progress& progress) {
+  auto choice = choose_method(method, quality, scene.solve);
   if (method || scene.solve.method) return choice;
   auto reason = default_method(scene, choice.quality, progress);
   choice.method = std::move(reason.method);

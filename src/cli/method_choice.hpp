@@ -14,16 +14,15 @@ struct MethodChoice {
   std::string method;  ///< instantiation, clustering, flat, direct or reference
   Quality quality = Quality::standard;
   std::string why = {};  ///< why this method, where it was not asked for
+  /// Where an error is wanted: takes the place of the quality's densities (radiosity/fineness.hpp).
+  std::optional<double> fineness = {};
 };
 
-/// A wanted error of an organ's absorbed light [fraction of the mean] picks the cheapest quality whose aim it is (see
-/// docs/accuracy.md for what each reaches on which scene; a scene of very small organs can miss it, and its certificate then says so).
-/// An explicit quality takes precedence. Throws UsageError for a method that does not exist or an error that no quality aims at.
-MethodChoice choose_method(const std::optional<std::string>& method, const std::optional<std::string>& quality,
-                           const std::optional<double>& error, const SolveChoice& scene);
+/// Throws UsageError for a method or a quality that does not exist.
+MethodChoice choose_method(const std::optional<std::string>& method, const std::optional<std::string>& quality, const SolveChoice& scene);
 /// The same; where nobody names a method, default_method() does.
-MethodChoice choose_method(const std::optional<std::string>& method, const std::optional<std::string>& quality,
-                           const std::optional<double>& error, const Scene& scene, Progress& progress);
+MethodChoice choose_method(const std::optional<std::string>& method, const std::optional<std::string>& quality, const Scene& scene,
+                           Progress& progress);
 
 /// The method for a scene that neither command line nor scene names one for: instantiation where much repeats and copies do not reach into
 /// each other (traces a pilot of few lines to find out), else clustering. `why` says it for people.

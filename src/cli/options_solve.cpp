@@ -22,11 +22,11 @@ void define_solve(CLI::App& verb, SolveOptions& o) {
       ->type_name("RESULT.h5");
   verb.add_option("--method", o.method, method_help)->type_name("NAME");
   verb.add_option("--quality", o.quality, quality_help)->type_name("NAME")->check(one_of(qualities));
-  verb.add_option("--error", o.error,
-                  "wanted rms error of an organ's absorbed light, as a fraction of the mean (0.01 is 1 %): takes the cheapest quality "
-                  "that aims at it; the certificate tells what was reached")
-      ->type_name("FRACTION")
-      ->check(number_between(1e-4, 0.5));
+  verb.add_option(
+          "--error", o.error,
+          "wanted rms error of an organ's absorbed light, of the mean: 2%, or 0.02, or by band, PAR=1%,NIR=2%. Solves at draft, and "
+          "again as fine as its certificate says it takes; exit code 3 where that does not reach it")
+      ->type_name("ERROR");
   verb.add_option("--samples", o.samples, "reference method only: paths per facet")->type_name("N")->check(count_from(16, 4294967295.0));
   verb.add_option("--threads", o.threads, "threads to use; 0 is all cores. The result has the same bits for any number")
       ->type_name("N")
@@ -46,10 +46,13 @@ void define_solve(CLI::App& verb, SolveOptions& o) {
       "The table on standard output holds, per lighting state and band, incident and absorbed light [W, or umol/s where the scene says "
       "so],\n"
       "the absorbed fraction, the albedo, the balance's residual and the certified error.\n\n"
-      "Exit codes: 0 done, 1 the result could not be written, 2 bad usage or input, 3 not converged (result written), 4 stopped.\n\n"
+      "Exit codes: 0 done, 1 the result could not be written, 2 bad usage or input, 3 not converged or --error not reached (result "
+      "written),\n"
+      "4 stopped.\n\n"
       "Examples:\n"
       "  sunfleck solve plants/stand.toml -o stand.h5\n"
       "  sunfleck solve field.toml -o draft.h5 --quality draft --no-certificate\n"
+      "  sunfleck solve field.toml -o field.h5 --error PAR=1%,NIR=2%\n"
       "  sunfleck solve field.toml -o truth.h5 --method reference --samples 4096");
 }
 

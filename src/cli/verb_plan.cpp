@@ -59,7 +59,7 @@ void print_text(const Scene& scene, const Plan& plan) {
 
 int verb_plan(const PlanOptions& options, Progress& progress) {
   const Scene scene = read_scene(options.scene);
-  const MethodChoice choice = choose_method(options.method, options.quality, std::nullopt, scene, progress);
+  const MethodChoice choice = choose_method(options.method, options.quality, scene, progress);
   for (const auto& note : scene.notes) progress.line("note: " + note);
   const Plan plan = make_plan(scene, choice, progress);
   if (options.json)

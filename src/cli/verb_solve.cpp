@@ -6,18 +6,20 @@
 
 #include <fmt/format.h>
 #include <tbb/global_control.h>
+#include <unistd.h>
 
 #include <sunfleck/audit/certificate.hpp>
 #include <sunfleck/core/error.hpp>
 #include <sunfleck/core/memory.hpp>
 #include <sunfleck/core/version.hpp>
 #include <sunfleck/format/scene_toml.hpp>
-#include <sunfleck/instantiation/solve.hpp>
-#include <sunfleck/radiosity/solve.hpp>
+#include <sunfleck/instantiation/fineness.hpp>
+#include <sunfleck/radiosity/fineness.hpp>
 #include <sunfleck/reference/path_tracer.hpp>
 #include <sunfleck/result/result_writer.hpp>
 #include <sunfleck/scene/facets.hpp>
 
+#include "cli/error_goal.hpp"
 #include "cli/method_choice.hpp"
 #include "cli/output_path.hpp"
 #include "cli/solve_table.hpp"
@@ -49,7 +51,7 @@ SolveReport run_method(const MethodChoice& choice, const Scene& scene, const Pla
     InstantiationSettings settings;
     settings.seed = seed;
     settings.threads = options.threads;
-    settings.density = instantiation_density(choice.quality);
+    settings.density = choice.fineness ? instantiation_density_at(*choice.fineness) : instantiation_density(choice.quality);
     return solve_instantiation(scene, placed, settings, sink, progress);
   }
   if (choice.method == "reference") {
@@ -66,7 +68,7 @@ SolveReport run_method(const MethodChoice& choice, const Scene& scene, const Pla
   RadiositySettings settings;
   settings.seed = seed;
   settings.threads = options.threads;
-  settings.density = density_of(choice.quality);
+  settings.density = choice.fineness ? density_at(*choice.fineness) : density_of(choice.quality);
   settings.method = radiosity_method(choice.method);
   return solve_radiosity(scene, *facets, settings, sink, progress);
 }
@@ -102,6 +104,82 @@ void say_not_converged(const Scene& scene, const SolveReport& report, Progress& 
                   counted(report.convergence.size(), "iteration", "iterations"), why));
 }
 
+void check_goal(const SolveOptions& options) {
+  if (options.quality) throw UsageError("--error: found with --quality; expected one of them, as --error chooses the densities itself");
+  if (!options.certificate) throw UsageError("--error: found with --no-certificate; expected to be judged by the certificate");
+}
+
+void check_goal(const MethodChoice& choice) {
+  if (choice.method == "direct" || choice.method == "reference")
+    throw UsageError(fmt::format("--error: found method '{}'; expected instantiation, clustering or flat ({})", choice.method,
+                                 choice.method == "direct" ? "'direct' leaves scattered light out" : "'reference' takes --samples"));
+}
+
+/// The largest fineness whose memory, which grows about as the samples do, stays below three fifths of the machine's.
+double finest_in_memory(const MethodChoice& choice, const SolveReport& report) {
+  const auto samples = [&](double fineness) {
+    if (choice.method == "instantiation") {
+      const auto d = instantiation_density_at(fineness);
+      return d.coarse.directions * d.coarse.lines_per_organ + d.fine.directions * d.fine.lines_per_organ;
+    }
+    const auto d = density_at(fineness);
+    return d.directions * d.lines_per_element * d.elements_per_organ;
+  };
+  const double room = 0.6 * static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+  double held = 0;
+  for (const auto& [name, bytes] : report.memory) held += static_cast<double>(bytes);
+  double fineness = finest_fineness;
+  while (fineness > *choice.fineness && held * samples(fineness) / samples(*choice.fineness) > room) fineness -= 0.05;
+  return std::max(fineness, *choice.fineness);
+}
+
+std::string percent_of_bands(const Scene& scene, const std::vector<double>& goal, const auto& value) {
+  std::string text;
+  for (std::size_t b = 0; b < goal.size(); ++b)
+    if (goal[b] > 0) text += fmt::format("{}{} {:.2f} %", text.empty() ? "" : ", ", scene.bands[b], 100.0 * value(b));
+  return text;
+}
+
+/// Judges a solve by its certificate; sets the fineness of the next one and returns true where one is needed.
+bool refine_further(const Scene& scene, const SolveReport& report, Certificate& certificate, Refinement& refinement, MethodChoice& choice,
+                    Progress& progress) {
+  const auto& goal = refinement.goal();
+  const double fineness = *choice.fineness;
+  refinement.add(fineness, certificate);
+  certificate.wanted = goal;
+  const auto expected = [&](double at) {
+    return percent_of_bands(scene, goal, [&](std::size_t b) { return refinement.expected(b, at, 0.0); });
+  };
+  const std::string wanted = percent_of_bands(scene, goal, [&](std::size_t b) { return goal[b]; });
+  if (report.status != SolveStatus::converged || refinement.reached()) {
+    progress.line(fmt::format("error of about {} at fineness {:.2f}; wanted {}", expected(fineness), fineness, wanted));
+    return false;
+  }
+  const double limit = finest_in_memory(choice, report);
+  const auto next = refinement.next(limit);
+  if (!next) {
+    progress.line(fmt::format("error of about {} at fineness {:.2f}; wanted {}, not reached", expected(fineness), fineness, wanted));
+    return false;
+  }
+  progress.line(fmt::format("error of about {} at fineness {:.2f}; wanted {}: solving again at fineness {:.2f}{}, where {} is expected",
+                            expected(fineness), fineness, wanted, *next,
+                            *next < limit - 1e-9      ? ""
+                            : limit < finest_fineness ? ", the finest that memory allows"
+                                                      : ", the finest there is",
+                            expected(*next)));
+  choice.fineness = next;
+  return true;
+}
+
+void say_not_reached(const Scene& scene, const Refinement& refinement, const Certificate& certificate, Progress& progress) {
+  const auto& goal = refinement.goal();
+  progress.line(fmt::format(
+      "sunfleck: the wanted error, {}, was not reached: the certificate finds {}. The result is written with status 'not_converged'. For "
+      "less: another method, or --method reference with as many --samples as it takes",
+      percent_of_bands(scene, goal, [&](std::size_t b) { return goal[b]; }),
+      percent_of_bands(scene, goal, [&](std::size_t b) { return certificate.rmse[b]; })));
+}
+
 }  // namespace
 
 int verb_solve(const SolveOptions& options, Progress& progress) {
@@ -110,8 +188,20 @@ int verb_solve(const SolveOptions& options, Progress& progress) {
   std::optional<tbb::global_control> limit;
   if (options.threads > 0) limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(options.threads));
 
+  NamedErrors wanted;
+  if (options.error) {
+    check_goal(options);
+    wanted = named_errors(*options.error);
+  }
+
   const Scene scene = read_scene(options.scene);
-  const MethodChoice choice = choose_method(options.method, options.quality, options.error, scene, progress);
+  std::optional<Refinement> refinement;
+  MethodChoice choice = choose_method(options.method, options.error ? "draft" : options.quality, scene, progress);
+  if (options.error) {
+    check_goal(choice);
+    refinement.emplace(error_goal(wanted, scene.bands), choice.method);
+    choice.fineness = refinement->first();
+  }
   const std::uint64_t seed = options.seed.value_or(scene.solve.seed.value_or(1));
   const PlacedScene placed = place(scene);
   std::optional<FacetScene> facets;  // every copy written out, for the methods that need it
@@ -129,33 +219,47 @@ int verb_solve(const SolveOptions& options, Progress& progress) {
   if (options.certificate_organs) checking.organs = *options.certificate_organs;
   if (options.certificate_rays) checking.rays = *options.certificate_rays;
   std::vector<ChosenOrgan> chosen;
-  ResultWriter writer(options.result, scene, placed, scene.output, software_version(), choice.method);
-  if (wants_certificate(choice, scene, placed, options)) {
-    chosen = choose_organs(rows, checking);
+  if (wants_certificate(choice, scene, placed, options)) chosen = choose_organs(rows, checking);
+
+  std::optional<ResultWriter> writer;
+  SolveReport report;
+  std::optional<TracedOrgans> traced;  // once: all solves are judged by the same
+  std::optional<Certificate> certificate;
+  double earlier_seconds = 0.0, certificate_seconds = 0.0;
+  for (bool again = true; again;) {
+    writer.emplace(options.result, scene, placed, scene.output, software_version(), choice.method);
     std::vector<std::uint64_t> organs;
     for (const auto& c : chosen) organs.push_back(c.organ);
-    writer.keep_totals(std::move(organs));
-  }
-  SolveReport report = run_method(choice, scene, placed, facets, options, seed, writer, progress);
-  report.timings.emplace(report.timings.begin(), "read", read_seconds);
-
-  std::optional<Certificate> certificate;
-  if (!chosen.empty()) {
+    if (!organs.empty()) writer->keep_totals(std::move(organs));
+    report = run_method(choice, scene, placed, facets, options, seed, *writer, progress);
+    again = false;
+    if (chosen.empty()) break;
     const Stopwatch watch;
-    certificate =
-        certify(scene, rows, facets ? RayScene(*facets) : RayScene(rows), chosen, writer.totals(), report.balance, checking, progress);
-    add_seconds(report.timings, "certificate", watch.seconds());
+    if (!traced) traced = trace_organs(scene, rows, facets ? RayScene(*facets) : RayScene(rows), chosen, checking, progress);
+    certificate = judge(*traced, writer->totals(), report.balance);
+    certificate_seconds += watch.seconds();
+    again = refinement && refine_further(scene, report, *certificate, *refinement, choice, progress);
+    if (again)
+      for (const auto& [phase, spent] : report.timings) earlier_seconds += spent;
   }
+  const bool solve_converged = report.status == SolveStatus::converged;
+  if (certificate && refinement && !refinement->reached()) report.status = SolveStatus::not_converged;
+  report.timings.emplace(report.timings.begin(), "read", read_seconds);
+  if (earlier_seconds > 0) add_seconds(report.timings, "earlier, coarser solves", earlier_seconds);
+  if (certificate) add_seconds(report.timings, "certificate", certificate_seconds);
   progress.check();
   const Stopwatch finishing;
-  writer.finish(report, certificate ? &*certificate : nullptr);
+  writer->finish(report, certificate ? &*certificate : nullptr);
   add_seconds(report.timings, "finish the file", finishing.seconds());
 
   print_solve_table(scene, report, certificate ? &*certificate : nullptr);
   say_timings(report, placed.facets, total.seconds(), progress);
   progress.line("wrote " + options.result);
   if (report.status == SolveStatus::converged) return 0;
-  say_not_converged(scene, report, progress);
+  if (solve_converged)
+    say_not_reached(scene, *refinement, *certificate, progress);
+  else
+    say_not_converged(scene, report, progress);
   return not_converged;
 }
 

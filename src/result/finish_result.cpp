@@ -46,6 +46,7 @@ void write_certificate(OutputFile& file, ArrayWriter& arrays, const Certificate&
   write_attribute(file, group.get(), "rmse_high", c.rmse_high);
   write_attribute(file, group.get(), "bias", c.bias);
   if (!c.bias_standard_error.empty()) write_attribute(file, group.get(), "bias_standard_error", c.bias_standard_error);
+  if (!c.wanted.empty()) write_attribute(file, group.get(), "wanted", c.wanted);
   write_attribute(file, group.get(), "rays", c.rays);
   write_attribute(file, group.get(), "seed", c.seed);
   arrays.flush();

@@ -391,6 +391,7 @@ std::optional<Certificate> Result::certificate() const {
   c.rmse_high = per_band("rmse_high");
   c.bias = per_band("bias");
   if (reader.has_attribute("certificate", "bias_standard_error")) c.bias_standard_error = per_band("bias_standard_error");
+  if (reader.has_attribute("certificate", "wanted")) c.wanted = per_band("wanted");
   c.rays = reader.count_attribute("certificate", "rays");
   c.seed = reader.count_attribute("certificate", "seed");
   return c;

@@ -103,7 +103,8 @@ TEST_CASE("numbers out of range and unknown names say what was expected", "[cli]
   const std::string see = "\nsee 'sunfleck solve --help'\n";
   CHECK(message({"--threads", "-1"}) == "sunfleck solve: --threads: found '-1'; expected a whole number from 0 to 4096" + see);
   CHECK(message({"--threads", "two"}) == "sunfleck solve: --threads: found 'two'; expected a whole number from 0 to 4096" + see);
-  CHECK(message({"--error", "nan"}) == "sunfleck solve: --error: found 'nan'; expected a number from 0.0001 to 0.5" + see);
+  CHECK(message({"--error", "nan"}) ==
+        "sunfleck: --error: found 'nan'; expected per cent, such as 2%, or a fraction, such as 0.02: from 0.0001 to 0.5\n");
   CHECK(message({"--quality", "fin"}) ==
         "sunfleck solve: --quality: found 'fin'; expected one of draft, standard, fine (did you mean 'fine'?)" + see);
   CHECK(message({"--qualty", "fine"}) ==

@@ -8,30 +8,21 @@ using namespace sunfleck;
 
 TEST_CASE("the command line comes before the scene, the scene before the defaults", "[cli]") {
   SolveChoice scene;
-  CHECK(choose_method({}, {}, {}, scene).method == "clustering");
-  CHECK(choose_method({}, {}, {}, scene).quality == Quality::standard);
+  CHECK(choose_method({}, {}, scene).method == "clustering");
+  CHECK(choose_method({}, {}, scene).quality == Quality::standard);
   scene.method = "flat";
   scene.quality = Quality::fine;
-  CHECK(choose_method({}, {}, {}, scene).method == "flat");
-  CHECK(choose_method({}, {}, {}, scene).quality == Quality::fine);
-  CHECK(choose_method("direct", "draft", {}, scene).method == "direct");
-  CHECK(choose_method("direct", "draft", {}, scene).quality == Quality::draft);
-}
-
-TEST_CASE("a wanted error picks the cheapest quality that aims at it", "[cli]") {
-  CHECK(choose_method({}, {}, 0.10, {}).quality == Quality::draft);
-  CHECK(choose_method({}, {}, 0.02, {}).quality == Quality::standard);
-  CHECK(choose_method({}, {}, 0.015, {}).quality == Quality::fine);
-  CHECK(choose_method({}, "fine", 0.10, {}).quality == Quality::fine);
-  CHECK_THROWS_WITH(choose_method({}, {}, 0.001, {}),
-                    "--error: found 0.001; expected at least 0.012, what 'fine' aims at (for less: --method reference)");
+  CHECK(choose_method({}, {}, scene).method == "flat");
+  CHECK(choose_method({}, {}, scene).quality == Quality::fine);
+  CHECK(choose_method("direct", "draft", scene).method == "direct");
+  CHECK(choose_method("direct", "draft", scene).quality == Quality::draft);
 }
 
 TEST_CASE("an unknown method names those there are", "[cli]") {
-  CHECK_THROWS_WITH(choose_method("radiance", {}, {}, {}),
+  CHECK_THROWS_WITH(choose_method("radiance", {}, SolveChoice{}),
                     "method: found 'radiance'; expected one of instantiation, clustering, flat, direct, reference");
   CHECK_THROWS_WITH(
-      choose_method("clusterng", {}, {}, {}),
+      choose_method("clusterng", {}, SolveChoice{}),
       "method: found 'clusterng'; expected one of instantiation, clustering, flat, direct, reference (did you mean 'clustering'?)");
-  CHECK_THROWS_AS(choose_method("clusterng", {}, {}, {}), UsageError);
+  CHECK_THROWS_AS(choose_method("clusterng", {}, SolveChoice{}), UsageError);
 }

@@ -36,19 +36,41 @@ struct ChosenOrgan {
 /// over probability, scaled to the area that they stand for together. Rising rows; holds nothing of the size of the scene.
 std::vector<ChosenOrgan> choose_organs(const FacetRows& rows, const CertificateSettings& settings);
 
-/// Checks the chosen organs (choose_organs), whose solved light `solved` holds in the same order, by paths from points uniform over each
-/// organ's area. Estimates, per band, over all states together (x solved, r reference, per area; w area; the Error definition of
-/// docs/formats-result.md):
-///   rmse^2 = max(0, sum w ((x - r)^2 - var r) / sum w), bias = sum w (x - r) / sum w, over the mean of r,
-/// where the mean of r is the mean of x over *all* organs of plants less the bias, which is far less noisy than that of the checked ones.
-/// The interval and the bias's standard error hold both the choice of organs and the noise of the paths (see error_interval.hpp).
-/// Where plants absorb less than 1e-6 of the incident light, irradiance (front + back) takes the place of absorbed in the measures.
+/// Path-traced light of one organ: means per area and the variances of these means, [s][b]. Irradiance is front + back.
+struct TracedLight {
+  std::vector<double> absorbed, absorbed_variance;      ///< [W m^-2], [(W m^-2)^2]
+  std::vector<double> irradiance, irradiance_variance;  ///< [W m^-2], [(W m^-2)^2]
+  std::uint64_t rays = 0;
+};
+
+/// Organs of a scene traced once: any number of solves can be judged by them.
+struct TracedOrgans {
+  std::vector<ChosenOrgan> chosen;  ///< those that were traced
+  std::vector<TracedLight> light;   ///< of each
+  std::uint64_t rays = 0;           ///< in all
+  std::uint64_t seed = 0;
+};
+
+/// Traces the chosen organs (choose_organs) by paths from points uniform over each organ's area.
 ///
 /// Work is counted in rays, not seconds, so that every machine gives the same certificate: a number that depends on the number of
 /// facets alone, some per cent more to find out what a path costs, and the tree of rays (1.3 microseconds a facet): below 2 s on one core
 /// up to 10^5 facets, and some 4 s with 10^6, where solving takes far longer. Fewer organs are checked (at least 64) where 16 samples of
 /// each would cost more. `rays` are of the same scene, written out or by copies; it is built by the caller. Same bits for any number of
-/// threads. A scene without plant organs yields measures of zero and no organs.
+/// threads.
+TracedOrgans trace_organs(const Scene& scene, const FacetRows& rows, const RayScene& rays, const std::vector<ChosenOrgan>& chosen,
+                          const CertificateSettings& settings, Progress& progress);
+
+/// Compares a solve with traced organs, of which `solved` holds all. Estimates, per band, over all states together (x solved, r reference,
+/// per area; w area; the Error definition of docs/formats-result.md):
+///   rmse^2 = max(0, sum w ((x - r)^2 - var r) / sum w), bias = sum w (x - r) / sum w, over the mean of r,
+/// where the mean of r is the mean of x over *all* organs of plants less the bias, which is far less noisy than that of the checked ones.
+/// The interval and the bias's standard error hold both the choice of organs and the noise of the paths (see error_interval.hpp).
+/// Where plants absorb less than 1e-6 of the incident light, irradiance (front + back) takes the place of absorbed in the measures.
+/// A scene without plant organs yields measures of zero and no organs.
+Certificate judge(const TracedOrgans& traced, const OrganTotals& solved, const std::vector<std::vector<Balance>>& balance);
+
+/// Both, for one solve whose light of the chosen organs `solved` holds in the same order.
 Certificate certify(const Scene& scene, const FacetRows& rows, const RayScene& rays, const std::vector<ChosenOrgan>& chosen,
                     const OrganTotals& solved, const std::vector<std::vector<Balance>>& balance, const CertificateSettings& settings,
                     Progress& progress);

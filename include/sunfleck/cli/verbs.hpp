@@ -15,7 +15,7 @@ namespace sunfleck {
 struct SolveOptions {
   std::string scene, result;
   std::optional<std::string> method, quality;
-  std::optional<double> error;  ///< wanted error, per organ, fraction
+  std::optional<std::string> error;  ///< wanted error, per organ: "2%", "0.02", "PAR=1%,NIR=2%"
   std::optional<std::uint64_t> seed;
   std::optional<std::uint32_t> samples;  ///< reference method, per facet
   int threads = 0;
