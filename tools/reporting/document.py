@@ -220,7 +220,7 @@ between the qualities at which the error would be just that, without any certifi
 
 Written by `tools/report` from its runs; do not edit. Run it again: `%s` (`tools/report --help`; it goes on where it was stopped, `--quick` takes a minute or two).
 
-Machine: %s. Compiler: %s. Commit %s, preset `%s`, %s. Each run is a process of its own, runs of all methods take turns, each with another seed. **CPU s** is user plus system time of the
+Machine: %s. Compiler: %s. Commit %s, built for `%s`, %s. Each run is a process of its own, runs of all methods take turns, each with another seed. **CPU s** is user plus system time of the
 whole process, reading and writing included, the certificate left out (`--no-certificate`), and is what all comparisons here use, since the machine may have had other work; **wall s** is beside
 it. **Peak** is the largest resident memory.
 
@@ -228,7 +228,7 @@ it. **Peak** is the largest resident memory.
 ([definition](formats-result.md#error-of-a-result-against-a-reference)). &plusmn; and bars in the plots: 95 %% interval of the mean over seeds (Student); none where a setting ran once. What path tracing
 leaves is its noise. `<`: below what the reference's noise lets see; such an error counts as this bound. Where it has to be compared at an error that it was not run at, its time is interpolated between its runs, and beyond them goes as 1 / error^2; on `canopy_1m`, which was
 traced once, the shape of the curve is that of `canopy_50k`. Ours are interpolated between qualities, never extrapolated: where even the cheapest is more exact, its time stands.
-''' % (self.command, m['machine'], m['compiler'], m['commit'], m['preset'], m['threads']),
+''' % (self.command, m['machine'], m['compiler'], m['commit'], m['isa'], m['threads']),
                  '## What the figures say', self.claims(), '\n### CPU seconds for 1 % PAR and 2 % NIR per organ', self.equal_error(), '\n### Where we lose', self.losses()]
         rows = self.direct_rows()
         if rows:

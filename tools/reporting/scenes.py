@@ -202,30 +202,29 @@ def dimmed(write):
 
 def full():
     every = 'draft standard fine'
-    some = 'draft standard'
     return [
         SceneChoice('coffee', 'coffee, one plant of 118,798 facets on open ground (third-party)', coffee, 64,
-                    jobs(3, clustering=every, flat=some, instantiation=every, direct=every, reference='16')),
+                    jobs(3, clustering='draft standard fine*1 2%', flat='draft standard*2', instantiation='draft standard fine*1',
+                         direct='draft standard*1 fine*1', reference='16')),
         SceneChoice('wheat', 'wheat, 24 plants of 3 shapes in a periodic plot', wheat(3, 4, 2), 32,
-                    jobs(3, clustering=every, flat=some, instantiation=some, direct=every, reference='16')),
+                    jobs(3, clustering='draft standard fine*1 4%', flat='draft standard', instantiation='draft standard', direct='draft', reference='16')),
         SceneChoice('canopy_5k', 'random canopy of 5,000 facets, periodic, LAI 3', canopy(5_000), 1024,
-                    jobs(3, clustering=every, flat=every, direct=every, reference='16 64 256')),
+                    jobs(3, clustering=every + ' 1%*8 2%*8', flat=every + ' 1%*4', direct=every, reference='16 64 256')),
         SceneChoice('canopy_50k', 'random canopy of 50,000 facets, periodic, LAI 3', canopy(50_000), 128,
-                    jobs(3, clustering=every, flat=some, direct=every, reference='16 64')),
-        SceneChoice('canopy_1m', 'random canopy of 1,000,000 facets, periodic, LAI 3', canopy(1_000_000), 16,
-                    jobs(1, clustering=some, flat='draft', direct='draft')),
+                    jobs(3, clustering='draft standard*2 fine*1 2%*2', flat='draft standard*1', direct='draft', reference='16')),
         SceneChoice('poplar', 'one poplar of 112,528 facets on open ground', of_repository('plants/poplar_scene.toml'), 64,
-                    jobs(3, clustering='draft standard fine*1', flat=some, instantiation=some, direct=every, reference='16')),
-        SceneChoice('ten_poplars', 'ten poplars, 1.2 million facets, no two alike', of_repository('plants/ten_poplars.toml'), 16,
-                    jobs(1, clustering=some, instantiation='draft', direct='draft')),
-        SceneChoice('grove', 'a grove of 16 copies of one poplar', grove(4, 5, 2.2), 16,
-                    jobs(2, clustering='draft standard*1', instantiation=every, direct='draft')),
-        SceneChoice('coffee_dim', 'coffee, direct light alone', dimmed(coffee), 64,
-                    jobs(3, clustering=some, direct=every), dim=True),
+                    jobs(3, clustering='draft standard fine*1 3%*2', flat='draft standard*1', instantiation='draft standard', direct='draft', reference='16')),
+        SceneChoice('coffee_dim', 'coffee, direct light alone', dimmed(coffee), 64, jobs(2, clustering='draft', direct='draft standard'), dim=True),
         SceneChoice('canopy_50k_dim', 'canopy of 50,000 facets, direct light alone', dimmed(canopy(50_000)), 64,
-                    jobs(3, clustering=some, direct=every), dim=True),
+                    jobs(2, clustering='draft', direct='draft standard'), dim=True),
         SceneChoice('poplar_dim', 'one poplar, direct light alone', dimmed(of_repository('plants/poplar_scene.toml')), 64,
-                    jobs(3, clustering=some, direct=every), dim=True),
+                    jobs(2, clustering='draft', direct='draft standard'), dim=True),
+        SceneChoice('grove', 'a grove of 16 copies of one poplar', grove(4, 5, 2.2), 16,
+                    jobs(2, clustering='draft standard*1', instantiation='draft standard fine*1', direct='draft')),
+        SceneChoice('ten_poplars', 'ten poplars, 1.2 million facets, no two alike', of_repository('plants/ten_poplars.toml'), 16,
+                    jobs(1, clustering='draft standard', instantiation='draft', direct='draft')),
+        SceneChoice('canopy_1m', 'random canopy of 1,000,000 facets, periodic, LAI 3', canopy(1_000_000), 16,
+                    jobs(1, clustering='draft standard', flat='draft', direct='draft')),
     ]
 
 
