@@ -16,7 +16,7 @@ namespace sunfleck {
 namespace {
 
 constexpr double least = 1e-4, most = 0.5;
-constexpr double spread_of_curves = 0.25;  // of the error, per unit of fineness
+constexpr double spread_of_curves = 0.18;  // of the error, from one unit of fineness on
 
 double error_value(const std::string& text) {
   char* end = nullptr;
@@ -33,7 +33,7 @@ double error_value(const std::string& text) {
 
 /// Errors at fineness 0, .5, 1, ... 3.
 using Curve = std::array<double, 7>;
-constexpr Curve of_clustering{1, .56, .37, .29, .24, .21, .19}, of_flat{1, .60, .40, .33, .29, .27, .26},
+constexpr Curve of_clustering{1, .54, .35, .28, .235, .20, .18}, of_flat{1, .58, .38, .32, .285, .265, .255},
     of_instantiation{1, .64, .42, .32, .26, .23, .21};
 
 }  // namespace
@@ -94,7 +94,8 @@ double Refinement::expected(std::size_t band, double fineness, double cautious) 
   double weight = 0, sum = 0, least_variance = 0;
   for (const auto& s : solves_) {
     const double g = error_at(method_, fineness) / error_at(method_, s.fineness), square = s.square[band] * g * g;
-    const double noise = s.standard_error[band] * g * g, spread = 2.0 * spread_of_curves * std::abs(fineness - s.fineness) * square;
+    const double noise = s.standard_error[band] * g * g,
+                 spread = 2.0 * spread_of_curves * std::min(1.0, std::abs(fineness - s.fineness)) * square;
     const double variance = noise * noise + spread * spread + 1e-300;
     if (weight == 0 || variance < least_variance) least_variance = variance;
     weight += 1.0 / variance;

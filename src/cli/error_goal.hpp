@@ -26,9 +26,9 @@ double error_at(const std::string& method, double fineness);
 /// Finds the fineness for a goal from what certificates say of solves at other ones.
 ///
 /// Each solve at f_k found rmse^2 = q_k with a standard error s_k. It says of a fineness f that rmse^2 is q_k g^2, g = error_at(f) /
-/// error_at(f_k), with the variance (s_k g^2)^2 + (2 c |f - f_k| q_k g^2)^2: c = .25 a unit is how far scenes differ from the common curve.
-/// Solves are weighted by the inverse of their variances; as all are judged by the same traced organs, whose noise they share, the variance
-/// of the mean is the least of theirs. What has to be below the goal is that mean and `caution` standard errors more.
+/// error_at(f_k), with the variance (s_k g^2)^2 + (2 c min(1, |f - f_k|) q_k g^2)^2: c = .18 is how far scenes differ from the common
+/// curve. Solves are weighted by the inverse of their variances; as all are judged by the same traced organs, whose noise they share, the
+/// variance of the mean is the least of theirs. What has to be below the goal is that mean and `caution` standard errors more.
 class Refinement {
  public:
   Refinement(std::vector<double> goal, std::string method);
@@ -48,7 +48,7 @@ class Refinement {
 
   const std::vector<double>& goal() const { return goal_; }
   static constexpr std::size_t most_solves = 3;
-  static constexpr double caution = 1.3;
+  static constexpr double caution = 1.0;
 
  private:
   struct Solve {

@@ -78,7 +78,7 @@ TEST_CASE("a solve that is good enough by a margin is the last", "[cli][error]")
   r.add(r.first(), certificate({0.02, 0.04}, 0.3));
   CHECK(r.reached());
   Refinement near({0.05, 0.05}, "clustering");
-  near.add(near.first(), certificate({0.02, 0.048}, 0.3));  // below, but not by 1.3 standard errors
+  near.add(near.first(), certificate({0.02, 0.048}, 0.3));  // below, but not by a standard error
   CHECK_FALSE(near.reached());
 }
 
@@ -97,14 +97,15 @@ TEST_CASE("the next solve is as fine as the worst band needs, and no finer", "[c
 }
 
 TEST_CASE("an error that stays higher than expected takes another solve; the third is the last", "[cli][error]") {
-  Refinement r({0.02}, "flat");
+  Refinement r({0.03}, "flat");
   r.add(r.first(), certificate({0.06}, 0.2));
   const double second = r.next(finest_fineness).value();
-  r.add(second, certificate({0.03}, 0.1));
+  REQUIRE(second < finest_fineness);
+  r.add(second, certificate({0.04}, 0.1));
   CHECK_FALSE(r.reached());
   const double third = r.next(finest_fineness).value();
   CHECK(third > second);
-  r.add(third, certificate({0.021}, 0.02));
+  r.add(third, certificate({0.035}, 0.02));
   CHECK_FALSE(r.reached());
   CHECK_FALSE(r.next(finest_fineness).has_value());
 }
