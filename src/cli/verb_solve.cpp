@@ -81,7 +81,8 @@ bool mostly_copies(const Scene& scene, const PlacedScene& placed) {
 }
 
 bool wants_certificate(const MethodChoice& choice, const Scene& scene, const PlacedScene& placed, const SolveOptions& options) {
-  return choice.method != "reference" && options.certificate && scene.solve.certificate.value_or(true) && placed.first_ground_facet > 0;
+  const bool asked = options.error || scene.solve.certificate.value_or(true);  // a wanted error cannot do without
+  return choice.method != "reference" && options.certificate && asked && placed.first_ground_facet > 0;
 }
 
 void say_timings(const SolveReport& report, std::uint64_t facets, double seconds, Progress& progress) {
@@ -233,7 +234,10 @@ int verb_solve(const SolveOptions& options, Progress& progress) {
     if (!organs.empty()) writer->keep_totals(std::move(organs));
     report = run_method(choice, scene, placed, facets, options, seed, *writer, progress);
     again = false;
-    if (chosen.empty()) break;
+    if (chosen.empty()) {
+      if (refinement) progress.line("note: no organ of a plant has an area: there is no error to judge");
+      break;
+    }
     const Stopwatch watch;
     if (!traced) traced = trace_organs(scene, rows, facets ? RayScene(*facets) : RayScene(rows), chosen, checking, progress);
     certificate = judge(*traced, writer->totals(), report.balance);

@@ -31,6 +31,7 @@ class Point:
         self.peak = max(r['peak_bytes'] for r in records)
         self.counts, self.iterations = r['counts'], r['iterations']
         self.noise = 'noise' in r
+        self.certified = self.setting[-1] in '%+'  # not among those that times and errors are compared of
 
     def errors(self, what, band):
         """One for each run: rms error; of path tracing its noise."""

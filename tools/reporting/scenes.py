@@ -23,7 +23,8 @@ reflectance = { PAR = 0.20, NIR = 0.40 }
 
 
 class Job:
-    """A method with its setting (a quality, a number of samples, a wanted error) and how often it runs."""
+    """A method with its setting and how often it runs: a quality ('draft'; 'draft+' with the certificate), a number of samples, or a
+    wanted error ('2%')."""
 
     def __init__(self, method, setting, runs):
         self.method, self.setting, self.runs = method, setting, runs
@@ -32,8 +33,8 @@ class Job:
         if self.method == 'reference':
             return ['--method', 'reference', '--samples', self.setting]
         what = '--error' if self.setting.endswith('%') else '--quality'
-        certificate = [] if what == '--error' else ['--no-certificate']  # it judges what --error chooses
-        return ['--method', self.method, what, self.setting, *certificate]
+        certificate = [] if self.setting[-1] in '%+' else ['--no-certificate']  # it judges what --error chooses
+        return ['--method', self.method, what, self.setting.rstrip('+'), *certificate]
 
 
 class SceneChoice:
@@ -204,16 +205,16 @@ def full():
     every = 'draft standard fine'
     return [
         SceneChoice('coffee', 'coffee, one plant of 118,798 facets on open ground (third-party)', coffee, 64,
-                    jobs(3, clustering='draft standard fine*1 2%', flat='draft standard*2', instantiation='draft standard fine*1',
+                    jobs(3, clustering='draft standard fine*1 draft+*1 2%*2', flat='draft standard*2', instantiation='draft standard fine*1',
                          direct='draft standard*1 fine*1', reference='16')),
         SceneChoice('wheat', 'wheat, 24 plants of 3 shapes in a periodic plot', wheat(3, 4, 2), 32,
-                    jobs(3, clustering='draft standard fine*1 4%', flat='draft standard', instantiation='draft standard', direct='draft', reference='16')),
+                    jobs(3, clustering='draft standard fine*1 draft+*1 4%*2', flat='draft standard', instantiation='draft standard', direct='draft', reference='16')),
         SceneChoice('canopy_5k', 'random canopy of 5,000 facets, periodic, LAI 3', canopy(5_000), 1024,
-                    jobs(3, clustering=every + ' 1%*8 2%*8', flat=every + ' 1%*4', direct=every, reference='16 64 256')),
+                    jobs(3, clustering=every + ' draft+*1 1%*5 2%*4', flat=every + ' 2%*2', direct=every, reference='16 64 256')),
         SceneChoice('canopy_50k', 'random canopy of 50,000 facets, periodic, LAI 3', canopy(50_000), 128,
-                    jobs(3, clustering='draft standard*2 fine*1 2%*2', flat='draft standard*1', direct='draft', reference='16')),
+                    jobs(3, clustering='draft standard*2 fine*1 draft+*1 2%*2', flat='draft standard*1', direct='draft', reference='16')),
         SceneChoice('poplar', 'one poplar of 112,528 facets on open ground', of_repository('plants/poplar_scene.toml'), 64,
-                    jobs(3, clustering='draft standard fine*1 3%*2', flat='draft standard*1', instantiation='draft standard', direct='draft', reference='16')),
+                    jobs(3, clustering='draft standard fine*1 draft+*1 3%*2', flat='draft standard*1', instantiation='draft standard', direct='draft', reference='16')),
         SceneChoice('coffee_dim', 'coffee, direct light alone', dimmed(coffee), 64, jobs(2, clustering='draft', direct='draft standard'), dim=True),
         SceneChoice('canopy_50k_dim', 'canopy of 50,000 facets, direct light alone', dimmed(canopy(50_000)), 64,
                     jobs(2, clustering='draft', direct='draft standard'), dim=True),
@@ -231,7 +232,7 @@ def full():
 def quick():
     return [
         SceneChoice('canopy_5k', 'random canopy of 5,000 facets, periodic, LAI 3', canopy(5_000), 64,
-                    jobs(2, clustering='draft standard', flat='draft', direct='draft', reference='16')),
+                    jobs(2, clustering='draft standard draft+ 2%', flat='draft', direct='draft', reference='16')),
         SceneChoice('wheat_small', 'wheat, 8 plants of 2 shapes in a periodic plot', wheat(2, 2, 2), 16,
                     jobs(2, clustering='draft', instantiation='draft', direct='draft')),
         SceneChoice('canopy_5k_dim', 'canopy of 5,000 facets, direct light alone', dimmed(canopy(5_000)), 64,
