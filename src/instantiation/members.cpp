@@ -9,6 +9,7 @@
 #include <sunfleck/core/sampling.hpp>
 #include <sunfleck/scene/facets.hpp>
 
+#include "instantiation/coincident.hpp"
 #include "instantiation/surroundings.hpp"
 
 namespace sunfleck {
@@ -117,6 +118,7 @@ double mean_share(const Members& members, const std::vector<Tangle>& list) {
 
 /// Members to put together, the most tangled first.
 std::vector<std::vector<std::uint32_t>> groups_of(const Members& members, std::vector<Tangle> list) {
+  for (const auto& [a, b] : coincident_members(members)) list.push_back({1.0, a, b});
   std::stable_sort(list.begin(), list.end(), [](const Tangle& a, const Tangle& b) { return a.share > b.share; });
   std::vector<std::uint32_t> root(members.size());
   std::vector<std::uint64_t> facets(members.size());

@@ -9,11 +9,14 @@ namespace sunfleck {
 
 namespace {
 
-/// Mean area of plant organs (of ground cells where there is no plant) [m^2]. The plain mean, not the area-weighted one: with lines
+/// Mean area of plant organs (of ground cells where no plant has an area; 1 where nothing has one: no line meets anything, however many
+/// there are) [m^2]. The plain mean, not the area-weighted one: with lines
 /// of even density, N_o ~ A_o lines meet organ o, its squared error goes like 1 / A_o, and the area-weighted mean squared error like
 /// (number of organs) / (total area).
 double mean_organ_area(const FacetScene& facets) {
-  const std::size_t end = facets.plant_facets > 0 ? facets.plant_facets : facets.size();
+  const auto plants = facets.area.begin() + static_cast<std::ptrdiff_t>(facets.plant_facets);
+  const bool any_plant = std::any_of(facets.area.begin(), plants, [](float area) { return area > 0.0f; });
+  const std::size_t end = any_plant ? facets.plant_facets : facets.size();
   std::vector<bool> seen(facets.organs.size(), false);
   double sum = 0, organs = 0;
   for (std::size_t f = 0; f < end; ++f) {
@@ -22,7 +25,7 @@ double mean_organ_area(const FacetScene& facets) {
     if (!seen[facets.organ[f]]) organs += 1;
     seen[facets.organ[f]] = true;
   }
-  return organs > 0 ? sum / organs : 0.0;
+  return organs > 0 ? sum / organs : 1.0;
 }
 
 /// Organs in tree order, but within small clusters those of one material together, so that small ones can share an element.

@@ -25,7 +25,8 @@ Surface make_surface(const FacetScene& scene, const std::vector<std::uint32_t>& 
   s.cell_area.resize(n);
   s.first_cell.assign(n + 1, 0);
   s.focus_count = n;
-  if (ground_is_flat && scene.plant_facets > 0)
+  const auto plants = scene.area.begin() + static_cast<std::ptrdiff_t>(scene.plant_facets);
+  if (ground_is_flat && std::any_of(scene.area.begin(), plants, [](float area) { return area > 0.0f; }))
     while (s.focus_count > 0 && order[s.focus_count - 1] >= scene.plant_facets) --s.focus_count;
   tbb::parallel_for(std::size_t{0}, n, [&](std::size_t i) {
     const auto& t = scene.corners[order[i]];

@@ -173,6 +173,20 @@ TEST_CASE("extremes: one facet, and none", "[extremes]") {
     CHECK_THROWS_WITH(solve(no_area, method), Catch::Contains("found no facet with an area; expected at least one that light can meet"));
 }
 
+TEST_CASE("extremes: plants without area over ground", "[extremes]") {
+  // A line throws no shadow: the ground has all of sun and sky, and gives a tenth back.
+  auto scene = black({Mesh{{{0, 0, 1}, {1, 0, 1}, {2, 0, 1}}, {{0, 1, 2}}}});
+  sky(scene, SkyModel::uniform, 50);
+  scene.ground = flat_ground({2, 2}, {0, 0}, {4, 4}, {0.1});
+  for (const auto method : {RadiosityMethod::clustering, RadiosityMethod::flat, RadiosityMethod::direct}) {
+    const auto run = solve(scene, method);
+    check_sound(run);
+    CHECK(run.report.balance[0][0].ground == Approx(0.9 * 4 * 150).epsilon(5e-3));  // lines at the border of the ground
+    CHECK(run.report.balance[0][0].leaves == 0);
+    CHECK(run.kept.on(0, 0) == 0);
+  }
+}
+
 TEST_CASE("extremes: a sun at the zenith and one that grazes", "[extremes]") {
   for (const auto method : both_methods)
     for (const double elevation : {90.0, 10.0, 1.0, 0.1}) {

@@ -3,8 +3,11 @@
 
 #include <map>
 
+#include <sunfleck/instantiation/solve.hpp>
 #include <sunfleck/radiosity/plan.hpp>
 
+#include "cli/method_choice.hpp"
+#include "radiosity/transport.hpp"
 #include "radiosity_runs.hpp"
 
 using namespace sunfleck;
@@ -132,4 +135,52 @@ TEST_CASE("absent: ground and period", "[absent]") {
   CHECK(no_period.bytes.at("elements") == all.bytes.at("elements"));
   CHECK(no_period.bytes.at("direct") == all.bytes.at("direct"));
   CHECK(no_period.work.at("links") < all.work.at("links"));
+}
+
+TEST_CASE("absent: transmission", "[absent]") {
+  auto opaque = full_scene();
+  opaque.optics = {{"leaf", {0.07f, 0.42f}, {0.12f, 0.46f}, {0, 0}}};
+  const auto reflection = [](const Scene& scene) { return Reflection(expand(scene), std::vector<std::uint32_t>(240, 0), 1); };
+  const Reflection with = reflection(full_scene()), without = reflection(opaque);
+  CHECK(with.transmits());
+  CHECK_FALSE(without.transmits());
+  // a table of two bands for leaf and ground, and a product on each side of each part in each application
+  CHECK(with.bytes() - without.bytes() == 2 * 2 * sizeof(float));
+  // what is seen, and thus traced, does not depend on optics
+  const auto all = counted(full_scene()), no_light_through = counted(opaque);
+  for (const char* what : {"elements", "cells", "fragments", "links", "direct_fragments"}) {
+    CAPTURE(what);
+    CHECK(no_light_through.work.at(what) == all.work.at(what));
+  }
+  CHECK(no_light_through.applications < all.applications);
+}
+
+TEST_CASE("absent: copies", "[absent]") {
+  auto one = full_scene();
+  one.periodic.reset();
+  auto four = one;
+  for (int i = 1; i < 4; ++i) four.plants[0].placements.push_back({Affine::translate({1.5 * i, 0, 0})});
+  const auto instantiated = [](const Scene& scene) {
+    FacetScene facets = expand(scene);
+    Kept kept(1, facets.size(), 2);
+    InstantiationSettings settings;
+    settings.density = instantiation_density(Quality::draft);
+    const auto report = solve_instantiation(scene, place(scene), settings, kept, silent());
+    Counted out;
+    out.work.insert(report.counts.begin(), report.counts.end());
+    out.bytes.insert(report.memory.begin(), report.memory.end());
+    return out;
+  };
+  // without copies there are no originals: the methods without them hold and count none, and are what is chosen
+  const auto plain = counted(one, RadiosityMethod::clustering);
+  CHECK(plain.work.count("originals") == 0);
+  CHECK(plain.bytes.count("originals") == 0);
+  CHECK(default_method(one, Quality::draft, silent()).method == "clustering");
+  // with copies the originals are one and the same, what stands between copies grows with them
+  const auto a = instantiated(one), b = instantiated(four);
+  for (const auto& [name, n] : b.work) INFO(name << " " << a.work.at(name) << " " << n);
+  CHECK(a.work.at("originals") == 1);
+  CHECK(b.work.at("originals") == 1);
+  CHECK(b.bytes.at("originals") == a.bytes.at("originals"));
+  CHECK(b.bytes.at("fields") > a.bytes.at("fields"));
 }

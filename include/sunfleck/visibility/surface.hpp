@@ -40,7 +40,7 @@ inline std::uint32_t cell_of(float u, float v, int k) {  // without branches, so
 }
 
 /// Prepares facets of a scene in the order given. `split[i]` belongs to facet `order[i]`; facets of the ground must come last when
-/// `ground_is_flat`, and are then left out of the focus. Zero-area facets get split 0.
+/// `ground_is_flat`, and are then left out of the focus if any plant has an area. Zero-area facets get split 0.
 Surface make_surface(const FacetScene& scene, const std::vector<std::uint32_t>& order, const std::vector<std::uint16_t>& split,
                      bool ground_is_flat);
 
