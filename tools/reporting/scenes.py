@@ -216,6 +216,8 @@ def full():
         SceneChoice('poplar', 'one poplar of 112,528 facets on open ground', of_repository('plants/poplar_scene.toml'), 64,
                     jobs(3, clustering='draft standard fine*1 draft+*1 3%*2', flat='draft standard*1', instantiation='draft standard', direct='draft', reference='16')),
         SceneChoice('coffee_dim', 'coffee, direct light alone', dimmed(coffee), 64, jobs(2, clustering='draft', direct='draft standard'), dim=True),
+        SceneChoice('canopy_5k_dim', 'canopy of 5,000 facets, direct light alone', dimmed(canopy(5_000)), 256,
+                    jobs(3, clustering='draft', direct='draft standard'), dim=True),
         SceneChoice('canopy_50k_dim', 'canopy of 50,000 facets, direct light alone', dimmed(canopy(50_000)), 64,
                     jobs(2, clustering='draft', direct='draft standard'), dim=True),
         SceneChoice('poplar_dim', 'one poplar, direct light alone', dimmed(of_repository('plants/poplar_scene.toml')), 64,
