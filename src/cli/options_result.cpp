@@ -26,6 +26,11 @@ void define_export(CLI::App& verb, ExportOptions& o) {
           "table only: sums of organs by plant, placement, type, name, order, layer (or layer:DEPTH, in metres), or any attribute of the "
           "plants; several are separated by commas")
       ->type_name("KEYS");
+  verb.add_option("--sensor", o.sensors,
+                  "table only: a row for each cell of this sensor in the place of organs; may be repeated, 'all' takes every sensor")
+      ->type_name("NAME")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   verb.add_option("--copy", o.copy, ".opf only: which copy of a plant, by its placement, such as 'coffee[3]' (default the only one)")
       ->type_name("PLACEMENT");
   verb.add_option("--original", o.original,
@@ -37,7 +42,8 @@ void define_export(CLI::App& verb, ExportOptions& o) {
       "  sunfleck export stand.h5 -o stand.ply\n"
       "  sunfleck export stand.h5 -o stand.glb --quantity absorbed --band NIR\n"
       "  sunfleck export stand.h5 -o organs.csv\n"
-      "  sunfleck export stand.h5 -o profile.csv --by type,layer:0.5");
+      "  sunfleck export stand.h5 -o profile.csv --by type,layer:0.5\n"
+      "  sunfleck export chamber.h5 -o bench.csv --sensor bench");
 }
 
 void define_info(CLI::App& verb, InfoOptions& o) {

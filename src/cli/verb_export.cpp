@@ -55,6 +55,13 @@ int verb_export(const ExportOptions& options, Progress& progress) {
     if (options.copy || options.original) throw UsageError("--copy, --original: found without an .opf to write");
     if (options.quantity || options.band || options.state)
       throw UsageError("--quantity, --band, --state: a table holds them all; they belong to meshes");
+    if (!options.sensors.empty()) {
+      if (options.by) throw UsageError("--by: found with --sensor; it sums organs");
+      const bool all = options.sensors == std::vector<std::string>{"all"};
+      const auto rows = export_sensors(result, options.output, all ? std::vector<std::string>{} : options.sensors, progress);
+      progress.line(fmt::format("wrote {}: {} of sensors", options.output, counted(rows, "cell", "cells")));
+      return 0;
+    }
     if (options.by)
       export_groups(result, options.output, *options.by, progress);
     else
@@ -63,6 +70,7 @@ int verb_export(const ExportOptions& options, Progress& progress) {
                              : fmt::format("wrote {}: {} organs", options.output, result.organ_count()));
     return 0;
   }
+  if (!options.sensors.empty()) throw UsageError("--sensor: found without a table (.csv) to write");
   if (suffix != ".opf" && (options.copy || options.original)) throw UsageError("--copy, --original: found without an .opf to write");
   if (suffix == ".opf") {
     if (options.quantity || options.band || options.state || options.by)

@@ -103,13 +103,14 @@ LampLight::Image LampLight::draw_image(const Vec3& p, const Vec3& n, double x, d
   return image;
 }
 
-void LampLight::candidates(const Vec3& p, const Vec3& n, double pick, double x, double y, std::vector<Candidate>& out) const {
+void LampLight::candidates(const Vec3& p, const Vec3& n, double pick, double x, double y, double clearance,
+                           std::vector<Candidate>& out) const {
   out.clear();
   const auto look = [&](std::size_t e, double weight) {
     Candidate c{e, weight, {0.0, 0.0}, {}};
     if (e < lamps_.faces.size()) {
       const auto& face = lamps_.faces[e];
-      if (!(glm::dot(face.normal, p - face.corners[0]) > 0.0)) return;
+      if (!(glm::dot(face.normal, p - face.corners[0]) > clearance)) return;  // nearer: in its plane, as a housing is
       c.view[0] = view_factor(p, n, face.corners);
       c.view[1] = view_factor(p, -n, face.corners);
     } else {
@@ -169,7 +170,7 @@ void LampLight::on_patch(const Patch& patch, std::uint32_t start, double lift, s
     if (!(image.chance > 0.0)) continue;
     const Vec3 from = p - image.shift;  // the point among the lamps as they are given
     const double u = x(3), v = x(4);
-    candidates(from, n, importance_.size() > most_candidates ? x(7) : 0.0, u, v, seen);
+    candidates(from, n, importance_.size() > most_candidates ? x(7) : 0.0, u, v, scene.clearance(), seen);
     double sum = 0.0;
     for (auto& c : seen) {
       c.weight /= image.chance;

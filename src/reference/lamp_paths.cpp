@@ -1,8 +1,11 @@
 #include "lamp_paths.hpp"
 
+#include <sunfleck/scene/lamp_shares.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 namespace sunfleck {
 
@@ -22,14 +25,10 @@ double chance(const std::vector<double>& sums, std::size_t row) {
 
 }  // namespace
 
-LampPaths::LampPaths(const Scene& scene) : lamps_(place_lamps(scene)), cell_(scene.periodic) {
-  double power = 0.0;
-  const auto add = [&](const std::vector<double>& strength, double times) {
-    for (const double v : strength) power += v * times;
-    cumulative_.push_back(power);
-  };
-  for (const auto& face : lamps_.faces) add(lamps_.units[face.unit].exitance, face.area);
-  for (const auto& beam : lamps_.beams) add(lamps_.units[beam.unit].power, 1.0);
+LampPaths::LampPaths(const Scene& scene, double clearance)
+    : lamps_(place_lamps(scene)), clearance_(std::max(0.0, clearance)), cell_(scene.periodic) {
+  cumulative_ = lamp_shares(lamps_);
+  std::partial_sum(cumulative_.begin(), cumulative_.end(), cumulative_.begin());
   double sum = 0.0;
   if (cell_)
     for (int i = -farthest_image; i <= farthest_image; ++i) images_.push_back(sum += std::pow(1.0 + std::abs(i), -1.5));
@@ -89,7 +88,7 @@ LampPaths::Draw LampPaths::draw(const Vec3& p, const Vec3& n, const double* x) c
   if (is_face) {
     const auto& face = lamps_.faces[row];
     const double there = -glm::dot(face.normal, out.direction);
-    if (!(there > 0.0)) return out;
+    if (!(there * out.distance > clearance_)) return out;
     const double by_points = density / face.area * square / there, by_rays = std::abs(cosine) / pi;  // per solid angle
     out.factor = std::abs(cosine) / (pi * (by_points + by_rays));
   } else {

@@ -1,6 +1,7 @@
 // Lamps as paths meet them. Shares nothing with the radiosity methods but where the lamps are.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -15,7 +16,8 @@ namespace sunfleck {
 /// points drawn on their opening alone. In periodic scenes the point is drawn in one of the images, nearer ones more often.
 class LampPaths {
  public:
-  explicit LampPaths(const Scene& scene);
+  /// `clearance` [m]: what is nearer to a face's plane lies in it, as a lamp's housing does, and is not lit by it.
+  LampPaths(const Scene& scene, double clearance);
 
   const Lamps& lamps() const { return lamps_; }
   const std::vector<double>& strength(std::uint32_t unit) const {
@@ -49,7 +51,8 @@ class LampPaths {
       start = hit.facet;
       const auto& c = lamps_.faces[start].corners;
       from = c[0] + hit.u * (c[1] - c[0]) + hit.v * (c[2] - c[0]);  // in a periodic scene, on the face as it is given
-      if (hit.front) met(lamps_.faces[hit.facet].unit, crossing_part(p, n, d, hit, before));
+      if (hit.front && before * std::abs(glm::dot(lamps_.faces[start].normal, d)) > clearance_)
+        met(lamps_.faces[hit.facet].unit, crossing_part(p, n, d, hit, before));
     }
   }
 
@@ -60,8 +63,9 @@ class LampPaths {
   Vec3 nearest_image(const Vec3& p, const Vec3& at) const;  ///< cells along x and y
 
   const Lamps lamps_;
+  const double clearance_;
   const std::optional<PeriodicCell> cell_;
-  std::vector<double> cumulative_;  ///< power of faces, then beams
+  std::vector<double> cumulative_;  ///< of lamp_shares()
   std::vector<double> images_;      ///< chances of being so many cells from the nearest image, cumulative
   FacetScene faces_;
   std::unique_ptr<RayScene> rays_;

@@ -139,7 +139,7 @@ PathSampler::Impl::Impl(const Scene& scene, const RayScene& r, std::uint64_t s)
     beams.push_back(beam);
     skies.push_back(state.sky ? &*state.sky : nullptr);
   }
-  if (!scene.lamps.empty()) lamps = std::make_unique<const LampPaths>(scene);
+  if (!scene.lamps.empty()) lamps = std::make_unique<const LampPaths>(scene, clearance);
   for (const auto& m : rays.materials())
     for (std::size_t b = 0; b < bands; ++b) {
       front.push_back(m.reflectance_front[b]);

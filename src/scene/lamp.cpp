@@ -1,4 +1,4 @@
-#include <sunfleck/scene/lamp.hpp>
+#include <sunfleck/scene/lamp_shares.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -80,11 +80,25 @@ Lamps place_lamps(const Scene& scene) {
   return lamps;
 }
 
+std::vector<double> lamp_shares(const Lamps& lamps) {
+  const auto& units = lamps.units;
+  std::vector<double> total(units.empty() ? 0 : units.front().power.size(), 0.0), out;
+  for (const auto& unit : units)
+    for (std::size_t b = 0; b < total.size(); ++b) total[b] += unit.power[b];
+  const auto share = [&](const std::vector<double>& strength, double times) {
+    double sum = 0.0;
+    for (std::size_t b = 0; b < total.size(); ++b)
+      if (total[b] > 0.0) sum += times * strength[b] / total[b];
+    out.push_back(sum);
+  };
+  for (const auto& face : lamps.faces) share(units[face.unit].exitance, face.area);
+  for (const auto& beam : lamps.beams) share(units[beam.unit].power, 1.0);
+  return out;
+}
+
 LampEmission::LampEmission(const Lamps& lamps) : lamps_(lamps) {
-  double total = 0.0;
-  const auto sum = [](const std::vector<double>& v) { return std::accumulate(v.begin(), v.end(), 0.0); };
-  for (const auto& face : lamps.faces) cumulative_.push_back(total += face.area * sum(lamps.units[face.unit].exitance));
-  for (const auto& beam : lamps.beams) cumulative_.push_back(total += sum(lamps.units[beam.unit].power));
+  cumulative_ = lamp_shares(lamps);
+  std::partial_sum(cumulative_.begin(), cumulative_.end(), cumulative_.begin());
 }
 
 LampEmission::Particle LampEmission::draw(const double* x) const {

@@ -26,6 +26,8 @@ Tint tint_of(Surface surface) {
       return {{1.35f, 1.15f, 0.50f}, {1.40f, 1.25f, 0.35f}};
     case Surface::flower:
       return {{1.30f, 0.75f, 0.95f}, {1.35f, 0.70f, 0.95f}};
+    case Surface::made:
+      return {{1.02f, 1.00f, 0.98f}, {1.02f, 1.00f, 0.98f}};
     case Surface::soil:
       return {{1.31f, 0.99f, 0.70f}, {1.31f, 0.99f, 0.70f}};
   }
@@ -58,6 +60,9 @@ bool guess(const std::string& text, Surface& out) {
     return out = Surface::ear, true;
   if (has_any(text, {"stem", "culm", "sheath", "petiole", "rachis", "peduncle", "stalk"})) return out = Surface::stem, true;
   if (has_any(text, {"trunk", "bark", "branch", "wood", "metamer", "internode", "twig", "bole", "axis"})) return out = Surface::bark, true;
+  if (has_any(text, {"wall", "ceiling", "panel", "housing", "concrete", "metal", "glass", "plastic"}) || has_word(text, "door") ||
+      has_word(text, "white") || has_word(text, "pot") || has_word(text, "pots"))
+    return out = Surface::made, true;
   return false;
 }
 

@@ -156,6 +156,21 @@ TEST_CASE("A lamp's housing is a plant of the same mesh", "[physics][lamps]") {
   CHECK(housed == Approx(1000 * f + 100 * (1 - f)).epsilon(0.01));
 }
 
+TEST_CASE("A lamp does not light the housing that it lies in", "[physics][lamps]") {
+  // turned and moved, so that rounding puts points of the housing on either side of the lamp
+  auto scene = scene_with({"PAR"}, {uniform_optics("grey", {0.5}, {0.0})});
+  auto housing = panel(0, 0, 1, 1, 1);
+  const Affine map = Affine::translate({0.1234567, -3.7654321, 12.3}) *
+                     Affine{Mat3{Vec3{0.8, 0, -0.6}, Vec3{0, 1, 0}, Vec3{0.6, 0, 0.8}}, Vec3{0.0}} * Affine::turn(0.7);
+  for (auto& v : housing.vertices) v = map.point(v);
+  add(scene, "housing", {housing}, 0);
+  lamp(scene, panel(0, 0, 1, 1, 1), 1000);
+  scene.lamps[0].placements[0].map = map;
+  for (const auto method : both_methods)
+    for (const float e : solve(scene, method).kept.irradiance) CHECK(e == 0.0f);
+  for (const float e : trace(scene, 1024).kept.irradiance) CHECK(e == 0.0f);
+}
+
 TEST_CASE("States choose their lamps", "[physics][lamps]") {
   auto scene = black_square();
   lamp(scene, panel(0, 0, 1, 1, 1), 1000);

@@ -31,6 +31,9 @@ TEST_CASE("surfaces are guessed from optics first, then from the organ's type", 
   REQUIRE(surface_of("ear_2", "x") == Surface::ear);
   REQUIRE(surface_of("stem", "wheat") == Surface::stem);
   REQUIRE(surface_of("stem", "bark") == Surface::bark);
+  REQUIRE(surface_of("organ", "wall") == Surface::made);
+  REQUIRE(surface_of("pot_3", "x") == Surface::made);
+  REQUIRE(surface_of("leaf", "white leaf") == Surface::leaf);
 }
 
 TEST_CASE("facet colour is the light that leaves the side", "[view]") {
@@ -49,7 +52,7 @@ TEST_CASE("facet colour is the light that leaves the side", "[view]") {
 TEST_CASE("a guessed hue keeps the band's power: the channels' mean is the exitance", "[view]") {
   const Optics optics{"x", {0.1f}, {0.2f}, {0.05f}};
   const float irradiance[] = {100, 10};
-  for (const auto surface : {Surface::leaf, Surface::stem, Surface::bark, Surface::ear, Surface::flower, Surface::soil}) {
+  for (const auto surface : {Surface::leaf, Surface::stem, Surface::bark, Surface::ear, Surface::flower, Surface::soil, Surface::made}) {
     const Rgb c = facet_colour({}, optics, surface, irradiance, Side::front);
     REQUIRE((c.r + c.g + c.b) / 3 == Approx(0.1 * 100 + 0.05 * 10).epsilon(1e-5));  // tints are written with two decimals, mean exactly 1
   }

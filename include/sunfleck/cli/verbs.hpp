@@ -42,6 +42,7 @@ struct ExportOptions {
   std::string result, output;
   std::optional<std::string> quantity, band, state;
   std::optional<std::string> by;        ///< tables: keys that organs are summed by
+  std::vector<std::string> sensors;     ///< tables: of these sensors ("all": of all) in the place of organs
   std::optional<std::string> copy;      ///< .opf: which copy, by its placement
   std::optional<std::string> original;  ///< .opf: the file that gains attributes
 };

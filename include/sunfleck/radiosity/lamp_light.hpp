@@ -46,7 +46,7 @@ class LampLight {
     double chance = 1.0;  ///< 0: none was found
   };
   Image draw_image(const Vec3& p, const Vec3& n, double x, double y) const;
-  void candidates(const Vec3& p, const Vec3& n, double pick, double x, double y, std::vector<Candidate>& out) const;
+  void candidates(const Vec3& p, const Vec3& n, double pick, double x, double y, double clearance, std::vector<Candidate>& out) const;
 
   const Lamps lamps_;
   const std::size_t bands_;

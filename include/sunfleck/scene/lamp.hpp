@@ -67,8 +67,8 @@ struct Lamps {
 /// The scene must have passed check_scene() and outlive the result.
 Lamps place_lamps(const Scene& scene);
 
-/// Draws light as it leaves the lamps: units by their power summed over bands, points uniform over faces and openings, directions by
-/// cosine or uniform over the sphere.
+/// Draws light as it leaves the lamps: units by lamp_shares(), points uniform over faces and openings, directions by cosine or uniform
+/// over the sphere.
 class LampEmission {
  public:
   explicit LampEmission(const Lamps& lamps);
@@ -79,12 +79,12 @@ class LampEmission {
   };
   /// x [5] uniform in [0, 1).
   Particle draw(const double* x) const;
-  /// Only units that shine in one of the sets' states count: all do.
+  /// The sum of lamp_shares(): 0 where no lamp gives off anything.
   double power() const { return cumulative_.empty() ? 0.0 : cumulative_.back(); }
 
  private:
   const Lamps& lamps_;
-  std::vector<double> cumulative_;  ///< faces, then beams: power summed over bands
+  std::vector<double> cumulative_;  ///< of lamp_shares()
 };
 
 }  // namespace sunfleck

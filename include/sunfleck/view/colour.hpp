@@ -26,10 +26,10 @@ Rgb8 encode_srgb(const Rgb& linear);
 Rgb decode_srgb(const Rgb8& encoded);
 
 /// What a facet is made of, as far as its hue must be guessed.
-enum class Surface : std::uint8_t { leaf, stem, bark, ear, flower, soil };
+enum class Surface : std::uint8_t { leaf, stem, bark, ear, flower, soil, made };
 /// Guessed from the words in an organ's type and in the name of its optics, ignoring case: "ground" or "soil"; "stem", "culm", "sheath",
-/// ... (green stems); "trunk", "bark", "branch", "metamer", ...; "ear", "spike", "fruit", ...; "flower", "petal", ...; everything else is
-/// leaf. The optics decide where both name something.
+/// ... (green stems); "trunk", "bark", "branch", "metamer", ...; "ear", "spike", "fruit", ...; "flower", "petal", ...; what people make
+/// ("wall", "panel", "housing", "door", "pot", "white", ...) is grey; everything else is leaf. The optics decide where both name something.
 Surface surface_of(std::string_view organ_type, std::string_view optics_name);
 
 /// Which bands make red, green and blue.

@@ -64,4 +64,11 @@ void export_csv(const Result& result, const std::string& file, Progress& progres
 /// are none, InputError where the file does not keep what is asked.
 void export_groups(const Result& result, const std::string& file, const std::string& by, Progress& progress);
 
+/// One row a cell of the sensors named (none: of all), in their order: sensor, kind, cell, x, y, z [m], normal_x, normal_y, normal_z,
+/// area_m2, then per state and band irradiance_BAND, standard_error_BAND [W m^-2], and where one of the sensors has a back (empty for
+/// those that have none) irradiance_back_BAND, standard_error_back_BAND; "_STATE" is appended where there are several. Where every state
+/// has a duration, exposure_J_m2_BAND (exposure_umol_m2_BAND) is the sum over states of irradiance x duration on the front. Returns the
+/// number of rows. Throws InputError for a result without sensors, UsageError for names of none.
+std::size_t export_sensors(const Result& result, const std::string& file, const std::vector<std::string>& names, Progress& progress);
+
 }  // namespace sunfleck
