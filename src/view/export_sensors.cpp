@@ -35,8 +35,7 @@ std::vector<StoredSensor> chosen(const Result& result, const std::vector<std::st
 /// Writes columns of a table: named once, then filled row by row.
 class SensorTable {
  public:
-  SensorTable(const Result& result, bool back)
-      : bands_(result.bands().size()), back_(back) {
+  SensorTable(const Result& result, bool back) : bands_(result.bands().size()), back_(back) {
     const auto& states = result.states();
     for (const auto& state : states) {
       durations_.push_back(state.duration_s);

@@ -6,7 +6,6 @@
 #include <sunfleck/view/colour.hpp>
 #include <sunfleck/view/picture.hpp>
 
-#include "view/natural_light.hpp"
 #include "view/natural_paint.hpp"
 #include "view/pixel_layers.hpp"
 
@@ -105,9 +104,9 @@ Picture draw_natural(const DrawnScene& scene, const LightSource& light, const Pi
   return picture;
 }
 
-Image draw_natural(const FacetScene& scene, const FacetLight& light, const PictureSettings& settings, Progress& progress) {
+LightSource light_source(const FacetLight& light, std::size_t facets) {
   const std::size_t b = light.bands.size();
-  if (light.irradiance.size() != 2 * scene.size() * b) throw Error("draw_natural: irradiance does not match the scene");
+  if (light.irradiance.size() != 2 * facets * b) throw Error("draw_natural: irradiance does not match the scene");
   const auto part = [](const std::vector<float>& all, std::size_t width) {
     return [&all, width](std::size_t first, std::size_t count) {
       return std::vector<float>(all.begin() + static_cast<std::ptrdiff_t>(first * width),
@@ -118,7 +117,12 @@ Image draw_natural(const FacetScene& scene, const FacetLight& light, const Pictu
   source.bands = light.bands, source.sun = light.sun;
   if (light.band) source.colours = ColourBands{{*light.band, *light.band, *light.band}, false};
   source.irradiance = part(light.irradiance, 2 * b);
-  if (light.sunlit.size() == 2 * scene.size()) source.sunlit = part(light.sunlit, 2);
+  if (light.sunlit.size() == 2 * facets) source.sunlit = part(light.sunlit, 2);
+  return source;
+}
+
+Image draw_natural(const FacetScene& scene, const FacetLight& light, const PictureSettings& settings, Progress& progress) {
+  const LightSource source = light_source(light, scene.size());
   return draw_natural(DrawnScene(scene), source, settings, progress).image;
 }
 

@@ -167,4 +167,11 @@ void NaturalPaint::add_beam(const Vec3& point, const Vec3& normal, std::size_t f
   for (std::size_t k = 0; k < rows_.size(); ++k) side[k] += sun_[k] * static_cast<float>(std::fabs(cosine));
 }
 
+Rgb sky_behind(const Vec3& direction, bool sunny) {
+  const Rgb zenith = sunny ? Rgb{0.10f, 0.27f, 0.62f} : Rgb{0.50f, 0.55f, 0.60f},
+            horizon = sunny ? Rgb{0.62f, 0.77f, 0.90f} : Rgb{0.78f, 0.81f, 0.83f};
+  const auto up = static_cast<float>(std::max(0.0, direction.z));
+  return glm::mix(horizon, zenith, std::pow(up, 0.55f));
+}
+
 }  // namespace sunfleck

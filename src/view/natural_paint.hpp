@@ -57,4 +57,7 @@ class NaturalPaint {
   std::array<float, 6> open_{};
 };
 
+/// Sky behind the scene, display light: decoration only.
+Rgb sky_behind(const Vec3& direction, bool sunny);
+
 }  // namespace sunfleck

@@ -2,9 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <limits>
 
 #include <sys/stat.h>
 
+#include <fmt/format.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
 
@@ -24,7 +28,7 @@ std::mutex& hdf5() {
   return mutex;
 }
 
-bool kept(const Result& result, const std::string& quantity) {
+bool is_kept(const Result& result, const std::string& quantity) {
   if (quantity.ends_with("error")) return false;  // needs a reference: the difference of two results stands for it here
   const auto has = [&](const std::string& name) { return result.has("facets/" + name) || result.has("organs/" + name); };
   const bool organs = quantity.starts_with("organ_");
@@ -32,6 +36,23 @@ bool kept(const Result& result, const std::string& quantity) {
   for (const char* name : {"absorbed", "irradiance", "sunlit"})
     if (plain == name || plain.starts_with(std::string(name) + "_")) return organs ? result.has(std::string("organs/") + name) : has(name);
   return quantity != "colour" || has("irradiance");
+}
+
+/// Facets of all distinct plants.
+std::size_t distinct_facets(const Result& result) {
+  const auto shapes = result.shape("geometry/shape_triangle_count");
+  std::size_t sum = 0;
+  if (!shapes.empty())
+    for (const auto n : result.rows<std::uint32_t>("geometry/shape_triangle_count", 0, shapes.front())) sum += n;
+  return sum;
+}
+
+/// 0 where the system does not tell.
+std::size_t available_bytes() {
+  std::ifstream in("/proc/meminfo");
+  for (std::string name, rest; in >> name && std::getline(in, rest);)
+    if (name == "MemAvailable:") return std::strtoull(rest.c_str(), nullptr, 10) * 1024;
+  return 0;
 }
 
 Framing framing_of(const FacetScene& scene) {
@@ -65,21 +86,42 @@ std::optional<FileStamp> file_stamp(const std::string& file) {
                    s.st_mtim.tv_sec * 1000000000LL + s.st_mtim.tv_nsec};
 }
 
+void check_viewer_memory(const std::string& file, std::size_t facets, std::size_t distinct, std::size_t available) {
+  constexpr double gibibyte = 1024.0 * 1024.0 * 1024.0;
+  const std::size_t needed = facets * 220 + std::min(distinct, facets) * 350;
+  if (available > 0 && needed > available)
+    throw InputError(
+        location(file), fmt::format("{} facets, which take about {:.1f} GiB to view", facets, static_cast<double>(needed) / gibibyte),
+        fmt::format("at most {:.1f} GiB, three quarters of what is free on this machine; 'sunfleck render' draws results of any size",
+                    static_cast<double>(available) / gibibyte));
+}
+
 ViewerScene::ViewerScene(const std::string& file) : file_(file) {
+  bool copies = false;  // most facets are
   {
     const std::lock_guard lock(hdf5());
     // The stamp first: a file replaced meanwhile is then noticed rather than missed.
     stamp_ = file_stamp(file).value_or(FileStamp{});
     result_ = std::make_unique<Result>(file);
+    const std::size_t kept = result_->facet_count();
+    const std::size_t facets = kept > 0 ? kept : result_->geometry().facet_count();
+    const std::size_t distinct = distinct_facets(*result_);
+    check_viewer_memory(file, facets, distinct, available_bytes() / 4 * 3);
+    copies = 2 * distinct <= facets;
     scene_ = stored_scene(*result_);
     organ_area_ = result_->rows<float>("organs/area", 0, scene_.organs.size());
     for (const auto& name : quantity_names())
-      if (kept(*result_, name)) quantities_.push_back(name);
+      if (is_kept(*result_, name)) quantities_.push_back(name);
+    if (copies) drawn_ = std::make_unique<DrawnScene>(*result_);
   }
   const std::size_t n = scene_.size(), m = scene_.organs.size();
-  tbb::parallel_invoke([&] { quick_ = std::make_unique<QuickRays>(scene_); }, [&] { framing_ = framing_of(scene_); });
-  normals_.resize(n);
-  tbb::parallel_for(std::size_t{0}, n, [&](std::size_t f) { normals_[f] = front_normal(scene_.corners[f]); });
+  const auto first_tree = [&] {
+    if (copies)
+      rays_ = std::make_unique<PlacedRays>(*drawn_);
+    else
+      quick_ = std::make_unique<QuickRays>(scene_);
+  };
+  tbb::parallel_invoke(first_tree, [&] { framing_ = framing_of(scene_); });
   organ_first_.assign(m + 1, 0);
   for (const auto o : scene_.organ) ++organ_first_[o + 1];
   for (std::size_t o = 0; o < m; ++o) organ_first_[o + 1] += organ_first_[o];
@@ -87,13 +129,14 @@ ViewerScene::ViewerScene(const std::string& file) : file_(file) {
   auto next = organ_first_;
   for (std::uint32_t f = 0; f < n; ++f) organ_facets_[next[scene_.organ[f]]++] = f;
 
+  exact_ready_ = copies;
   building_ = std::async(std::launch::async, [this] {
-                rays_ = std::make_unique<RayScene>(scene_);
-                if (scene_.periodic) {
-                  cell_scene_ = std::make_unique<FacetScene>(scene_);
-                  cell_scene_->periodic.reset();
-                  cell_rays_ = std::make_unique<RayScene>(*cell_scene_);
+                if (exact_ready_) return;
+                {
+                  const std::lock_guard lock(hdf5());
+                  drawn_ = std::make_unique<DrawnScene>(*result_);
                 }
+                rays_ = std::make_unique<PlacedRays>(*drawn_);
                 exact_ready_ = true;
               }).share();
 }
@@ -107,7 +150,17 @@ ViewerScene::~ViewerScene() {
 
 RayHit ViewerScene::first_hit(const Vec3& origin, const Vec3& direction, std::uint32_t start, double range, bool infinite) const {
   if (!exact_ready_) return quick_->first_hit(origin, direction, start, range);
-  return (cell_rays_ && !infinite ? *cell_rays_ : *rays_).first_hit(origin, direction, start, range);
+  const auto part = infinite ? PlacedRays::Part::repeated : PlacedRays::Part::all;
+  const PlacedHit met = rays_->first_hit(origin, direction, part, 0, range, start == no_facet ? no_placed_facet : start);
+  RayHit hit;
+  if (!met) return hit;
+  hit.facet = static_cast<std::uint32_t>(met.facet), hit.u = met.u, hit.v = met.v, hit.distance = met.distance;
+  hit.front = glm::dot(area_vector(scene_.corners[hit.facet]), direction) < 0;
+  return hit;
+}
+
+Vec3 ViewerScene::normal(std::size_t facet) const {
+  return front_normal(scene_.corners[facet]);
 }
 
 void ViewerScene::wait_for_exact() const {
@@ -153,19 +206,40 @@ std::shared_ptr<const ViewerLight> ViewerScene::light(std::size_t state) const {
   return lights_[state] = made;
 }
 
-std::shared_ptr<const NaturalLight> ViewerScene::natural(std::size_t state, bool wait) const {
+namespace {
+
+/// A paint with the light that it looks at.
+struct HeldPaint {
+  std::shared_ptr<const ViewerLight> light;
+  LightSource source;
+  std::optional<NaturalPaint> paint;
+};
+
+std::shared_ptr<const NaturalPaint> paint_of(const DrawnScene& scene, const PlacedRays& rays, std::shared_ptr<const ViewerLight> light,
+                                             bool open_ground) {
+  auto held = std::make_shared<HeldPaint>();
+  held->light = std::move(light);
+  held->source = light_source(held->light->stored, scene.size());
+  held->paint.emplace(scene, rays, held->source, std::numeric_limits<std::size_t>::max());
+  if (open_ground) held->paint->mark_ground();
+  Progress silent;
+  held->paint->read(silent);
+  return {held, &*held->paint};
+}
+
+}  // namespace
+
+std::shared_ptr<const NaturalPaint> ViewerScene::natural(std::size_t state, bool wait) const {
   if (!exact_ready_ && !wait) return nullptr;
   const auto stored = light(state);
-  std::shared_future<std::shared_ptr<const NaturalLight>> future;
+  std::shared_future<std::shared_ptr<const NaturalPaint>> future;
   {
     const std::lock_guard lock(reading_);
     auto& slot = naturals_[state];
     if (!slot.valid()) {
       slot = std::async(std::launch::async, [this, stored] {
                building_.get();
-               auto made = std::make_shared<NaturalLight>(scene_, stored->stored, *rays_);
-               if (!scene_.periodic && scene_.plant_facets < scene_.size()) made->prepare_open_ground();
-               return std::shared_ptr<const NaturalLight>(made);
+               return paint_of(*drawn_, *rays_, stored, !scene_.periodic && scene_.plant_facets < scene_.size());
              }).share();
       for (auto old = naturals_.begin(); naturals_.size() > lights_kept && old != naturals_.end();) {
         const bool done = old->second.wait_for(std::chrono::seconds(0)) == std::future_status::ready;

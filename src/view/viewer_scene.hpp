@@ -17,9 +17,8 @@
 #include <sunfleck/view/picture.hpp>
 #include <sunfleck/view/stored.hpp>
 #include <sunfleck/visibility/quick_rays.hpp>
-#include <sunfleck/visibility/rays.hpp>
 
-#include "view/natural_light.hpp"
+#include "view/natural_paint.hpp"
 
 namespace sunfleck {
 
@@ -30,6 +29,10 @@ struct FileStamp {
   friend bool operator==(const FileStamp&, const FileStamp&) = default;
 };
 std::optional<FileStamp> file_stamp(const std::string& file);
+
+/// Throws InputError if so many facets, of which `distinct` are stored and the others are copies, need more bytes than they may take
+/// (0: not known): at the most 220 bytes for corners and values of each, 350 for the trees of rays and the mesh of a distinct one.
+void check_viewer_memory(const std::string& file, std::size_t facets, std::size_t distinct, std::size_t available);
 
 /// Values of a quantity, with the scales they suggest.
 struct ViewerMap {
@@ -54,7 +57,8 @@ struct Framing {
 /// since HDF5 knows one thread only. The file stays open: a file that is replaced by renaming does not disturb it.
 class ViewerScene {
  public:
-  /// Reads what the first picture needs; the exact ray tree is then built in the background. Throws what Result throws.
+  /// Reads what the first picture needs; the exact ray tree is then built in the background, unless most facets are copies: then it is
+  /// there at once. Throws what Result throws; InputError where memory does not suffice.
   explicit ViewerScene(const std::string& file);
   ~ViewerScene();
   ViewerScene(const ViewerScene&) = delete;
@@ -73,11 +77,12 @@ class ViewerScene {
   const std::vector<std::uint32_t>& organ_first() const { return organ_first_; }
   const std::vector<std::uint32_t>& organ_facets() const { return organ_facets_; }
   float organ_area(std::size_t organ) const { return organ_area_[organ]; }  ///< the file's [m^2]
-  const Vec3& normal(std::size_t facet) const { return normals_[facet]; }
+  Vec3 normal(std::size_t facet) const;                                     ///< unit, of the front
 
   const Framing& framing() const { return framing_; }
 
-  /// Nearest facet; `infinite`: a periodic scene repeats. From the exact tree once it is there.
+  /// Nearest facet; `infinite`: a periodic scene repeats. From the exact tree once it is there; u and v are then those of the mesh's own
+  /// corners, as in PlacedHit.
   RayHit first_hit(const Vec3& origin, const Vec3& direction, std::uint32_t start, double range, bool infinite) const;
   bool exact() const { return exact_ready_; }
   void wait_for_exact() const;
@@ -86,7 +91,7 @@ class ViewerScene {
   std::shared_ptr<const ViewerMap> map(const std::string& quantity, std::size_t band, std::size_t state) const;
   std::shared_ptr<const ViewerLight> light(std::size_t state) const;
   /// Null while it is being prepared in the background (and before the exact tree is there); `wait` waits for it.
-  std::shared_ptr<const NaturalLight> natural(std::size_t state, bool wait = false) const;
+  std::shared_ptr<const NaturalPaint> natural(std::size_t state, bool wait = false) const;
 
   /// Rows of one organ or facet: [width] floats of a dataset [states][rows][...]; empty where it is not kept.
   std::vector<float> row(const std::string& dataset, std::size_t state, std::size_t row) const;
@@ -96,15 +101,14 @@ class ViewerScene {
   FileStamp stamp_;
   std::unique_ptr<Result> result_;
   FacetScene scene_;
-  std::vector<Vec3> normals_;
   std::vector<std::string> quantities_;
   std::vector<std::uint32_t> organ_first_, organ_facets_;
   std::vector<float> organ_area_;
   Framing framing_;
-  std::unique_ptr<QuickRays> quick_;
-  std::unique_ptr<FacetScene> cell_scene_;
-  mutable std::unique_ptr<RayScene> rays_, cell_rays_;  ///< written once, before exact_ready_
-  mutable std::atomic<bool> exact_ready_{false};
+  std::unique_ptr<QuickRays> quick_;  ///< none where the exact tree is there at once
+  std::unique_ptr<DrawnScene> drawn_;
+  std::unique_ptr<PlacedRays> rays_;  ///< both written once, before exact_ready_
+  std::atomic<bool> exact_ready_{false};
   std::shared_future<void> building_;
 
   mutable std::mutex reading_;  ///< guards the file and the caches below
@@ -115,7 +119,7 @@ class ViewerScene {
   };
   mutable std::list<CachedMap> maps_;  ///< the latest first
   mutable std::map<std::size_t, std::shared_ptr<const ViewerLight>> lights_;
-  mutable std::map<std::size_t, std::shared_future<std::shared_ptr<const NaturalLight>>> naturals_;
+  mutable std::map<std::size_t, std::shared_future<std::shared_ptr<const NaturalPaint>>> naturals_;
 };
 
 }  // namespace sunfleck

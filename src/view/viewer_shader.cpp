@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include <tbb/parallel_sort.h>
 
@@ -94,6 +95,9 @@ ViewerShader::ViewerShader(const ViewerScenes& scenes, const ViewerView& view, b
   ground_height_ = infinity;
   for (std::size_t f = facets.plant_facets; f < facets.size(); ++f)
     for (const auto& p : facets.corners[f]) ground_height_ = std::min(ground_height_, p.z);
+  const auto& camera = view.camera;
+  pixel_ =
+      2 * std::tan(0.5 * camera.field_of_view_deg * std::numbers::pi / 180) * (camera.orthographic ? camera.distance : 1.0) / view.height;
   expose();
 }
 
@@ -142,15 +146,18 @@ Rgb ViewerShader::operator()(const CameraRay& ray, std::uint64_t bits, std::uint
   const RayHit hit = first_shown(ray);
   facet = hit.facet;
   if (!hit) return background(ray, bits);
-  const Rgb colour = colour_ ? natural(hit, bits) : mapped(hit, ray.direction);
+  const Rgb colour = colour_ ? natural(hit, ray.direction, bits) : mapped(hit, ray.direction);
   if (!choosy_ || selected_[scene_.scene().organ[hit.facet]]) return colour;
   const auto grey =
       Rgb{view_.dark ? 0.08f : 0.72f} * (0.6f + 0.4f * static_cast<float>(std::fabs(glm::dot(scene_.normal(hit.facet), ray.direction))));
   return glm::mix(grey, colour, pale);
 }
 
-Rgb ViewerShader::natural(const RayHit& hit, std::uint64_t bits) const {
-  if (natural_) return tone_map(natural_->exitance(hit, bits), exposure_);
+Rgb ViewerShader::natural(const RayHit& hit, const Vec3& direction, std::uint64_t bits) const {
+  if (natural_) {
+    const PlacedHit met{hit.facet, static_cast<float>(hit.u), static_cast<float>(hit.v), hit.distance};
+    return tone_map(natural_->exitance(met, direction, view_.camera.orthographic ? pixel_ : pixel_ * hit.distance, bits), exposure_);
+  }
   const auto& facets = scene_.scene();
   const std::size_t f = hit.facet, b = light_->stored.bands.size();
   const auto& surfaces = light_->surfaces[facets.optics[f]];

@@ -39,7 +39,7 @@ class ViewerShader {
   const ShownMap& shown() const { return shown_; }
 
  private:
-  Rgb natural(const RayHit& hit, std::uint64_t bits) const;
+  Rgb natural(const RayHit& hit, const Vec3& direction, std::uint64_t bits) const;
   Rgb mapped(const RayHit& hit, const Vec3& direction) const;
   Rgb background(const CameraRay& ray, std::uint64_t bits) const;
   void expose();
@@ -51,9 +51,9 @@ class ViewerShader {
   ShownMap shown_;
   std::vector<Rgb> ramp_, categories_;
   std::shared_ptr<const ViewerLight> light_;
-  std::shared_ptr<const NaturalLight> natural_;
+  std::shared_ptr<const NaturalPaint> natural_;
   Exposure exposure_;
-  double ground_height_ = 0;
+  double ground_height_ = 0, pixel_ = 0;  ///< pixel_: size of a pixel, at 1 m in perspective [m]
   bool open_ground_ = false;
   bool choosy_ = false;  ///< some facets are not selected
 };

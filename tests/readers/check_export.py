@@ -5,8 +5,10 @@
 A reader that is not installed is skipped with a line that says so. Exit code 1 if anything differs. Formats and readers:
 .vtkhdf VTK and h5py; .ply VTK and numpy; .obj VTK and meshio; .xdmf h5py along every reference, and VTK where it has its
 XDMF reader (that of python3-paraview does, that of python3-vtk9 does not);
-.glb VTK, and json with struct.
+.glb VTK, and json with struct; .csv (of organs, groups, sensors) the csv module; .opf the xml module. An .opf must be of the copy
+that its name tells: shrub_1.opf is shrub[1].
 """
+import csv
 import json
 import struct
 import sys
@@ -329,6 +331,97 @@ def read_glb(e, path):
         print("read by VTK:", path)
 
 
+def numbers(rows, name):
+    return np.array([float(r[name]) if r[name] else np.nan for r in rows])
+
+
+def organ_columns(e):
+    """name -> values of every organ, as tables name them."""
+    out = {"area_m2": e.file["organs/area"][:]}
+    energy = [0.0] * len(e.bands)
+    photons = ["mol" in unit for unit in e.file["bands/unit"].asstr()[:]]
+    for s, state in enumerate(e.states):
+        suffix = "_" + state if len(e.states) > 1 else ""
+        for b, band in enumerate(e.bands):
+            out[f"absorbed_{'umol_s' if photons[b] else 'W'}_{band}{suffix}"] = power = e.file["organs/absorbed"][s, :, b]
+            energy[b] = energy[b] + power.astype(float) * e.file["states/duration"][s]
+            for side, name in enumerate(("front", "back")):
+                out[f"irradiance_{name}_{band}{suffix}"] = e.file["organs/irradiance"][s, :, side, b]
+        for side, name in enumerate(("front", "back")):
+            out[f"sunlit_{name}{suffix}"] = e.file["organs/sunlit"][s, :, side]
+    if (e.file["states/duration"][:] > 0).all():
+        for b, band in enumerate(e.bands):
+            out[f"absorbed_{'umol' if photons[b] else 'J'}_{band}"] = energy[b].astype(np.float32)
+    return out
+
+
+def texts_of(e, name):
+    return np.array(list(e.file[f"names/{name}"].asstr()))[e.file[f"organs/{name if name != 'organ' else 'name'}"][:]]
+
+
+def read_csv(e, path):
+    with open(path, newline="") as file:
+        table = csv.DictReader(file)
+        rows = list(table)
+    if table.fieldnames[0] == "organ":
+        return read_organs(e, path, table.fieldnames, rows)
+    return read_sensors(e, path, table.fieldnames, rows) if table.fieldnames[0] == "sensor" else read_groups(e, path, table.fieldnames, rows)
+
+
+def read_organs(e, path, names, rows):
+    expected = organ_columns(e)
+    same(f"{path}: columns", names, ["organ", "plant", "placement", "name", "type"] + list(expected))
+    same(f"{path}: organs", numbers(rows, "organ"), np.arange(len(e.file["organs/area"])))
+    for name, of in (("plant", "plant"), ("placement", "placement"), ("name", "organ"), ("type", "type")):
+        same(f"{path}: {name}", [r[name] for r in rows], list(texts_of(e, of)))
+    for name, values in expected.items():  # every digit of a float is written
+        same(f"{path}: {name}", numbers(rows, name).astype(np.float32), values.astype(np.float32))
+
+
+def read_groups(e, path, names, rows):
+    keys = names[:names.index("organs")]
+    group = list(zip(*(texts_of(e, key) for key in keys)))
+    expected, area = organ_columns(e), e.file["organs/area"][:].astype(float)
+    same(f"{path}: groups", sorted(tuple(r[k] for k in keys) for r in rows), sorted(set(group)))
+    for r in rows:
+        here = np.array([g == tuple(r[k] for k in keys) for g in group])
+        check(f"{path}: organs of {r}", int(r["organs"]) == here.sum())
+        for name, values in expected.items():
+            of = values[here].astype(float)
+            summed = name == "area_m2" or name.startswith("absorbed")
+            wanted = of.sum() if summed else (of * area[here]).sum() / area[here].sum()
+            check(f"{path}: {name} of {r}", abs(float(r[name]) - wanted) <= 1e-6 * abs(wanted))  # written as float32
+
+
+def read_sensors(e, path, names, rows):
+    begin = 0
+    for name in e.file["names/sensor"].asstr()[:]:
+        g = e.file[f"sensors/{name}"]
+        here = rows[begin:begin + len(g["area"])]
+        begin += len(here)
+        same(f"{path}: {name}", [r["sensor"] for r in here], [name] * len(g["area"]))
+        for axis in range(3):
+            same(f"{path}: {name} {'xyz'[axis]}", numbers(here, "xyz"[axis]), g["centroid"][:, axis])
+            same(f"{path}: {name} normal", numbers(here, "normal_" + "xyz"[axis]), g["normal"][:, axis])
+        for s, state in enumerate(e.states):
+            suffix = "_" + state if len(e.states) > 1 else ""
+            for b, band in enumerate(e.bands):
+                for column in ("irradiance", "standard_error", "irradiance_back", "standard_error_back"):
+                    if column in g:
+                        same(f"{path}: {name} {column}", numbers(here, f"{column}_{band}{suffix}").astype(np.float32), g[column][s, :, b])
+    check(f"{path}: rows", begin == len(rows))
+
+
+def read_opf(e, path):
+    placement = "{}[{}]".format(*Path(path).stem.rsplit("_", 1))
+    here = texts_of(e, "placement") == placement
+    organs = [node for node in xml.parse(path).getroot().iter() if node.find("area_m2") is not None]
+    check(f"{path}: organs", len(organs) == here.sum() > 0)
+    for name, values in organ_columns(e).items():
+        name = name.replace(" ", "_")
+        same(f"{path}: {name}", np.array([float(node.find(name).text) for node in organs], np.float32), values[here].astype(np.float32))
+
+
 def nearest(points, others):
     """Distance of every point to the nearest of the others."""
     return np.array([np.sqrt(((others - p)**2).sum(1).min()) for p in points])
@@ -337,7 +430,8 @@ def nearest(points, others):
 def main():
     expected = Expected(sys.argv[1])
     for path in sys.argv[2:]:
-        {".vtkhdf": read_vtkhdf, ".ply": read_ply, ".obj": read_obj, ".xdmf": read_xdmf, ".glb": read_glb}[Path(path).suffix](expected, path)
+        {".vtkhdf": read_vtkhdf, ".ply": read_ply, ".obj": read_obj, ".xdmf": read_xdmf, ".glb": read_glb,
+         ".csv": read_csv, ".opf": read_opf}[Path(path).suffix](expected, path)
     print("all equal" if not failures else f"{len(failures)} differences")
     sys.exit(1 if failures else 0)
 

@@ -62,6 +62,19 @@ TEST_CASE("Lit meshes are read again by independent readers, with the result's n
     export_xdmf(result, folder / "m.xdmf", {}, progress);
     check(folder, {"m.ply", "m.obj", "m.glb", "m.vtkhdf", "m.xdmf"});
   }
+  SECTION("tables, and a plant written back") {
+    const Scene scene = small_scene(300);
+    store(scene, folder / "r.h5");
+    const Result result(folder / "r.h5");
+    export_csv(result, folder / "organs.csv", progress);
+    export_groups(result, folder / "groups.csv", "placement,type", progress);
+    const std::string copy = result.strings("names/placement").at(1);  // the mirrored one
+    REQUIRE(copy == "shrub[1]");
+    REQUIRE(std::system((std::string(SUNFLECK_PROGRAM) + " export " + (folder / "r.h5") + " -o " + (folder / "shrub_1.opf") +
+                         " --copy 'shrub[1]' 2>/dev/null")
+                            .c_str()) == 0);
+    check(folder, {"organs.csv", "groups.csv", "shrub_1.opf"});
+  }
   SECTION("copies that share colours are instances") {
     store(small_scene(300), folder / "r.h5");
     const Result result(folder / "r.h5");

@@ -57,6 +57,15 @@ std::string text(const Vec3& v) {
 
 }  // namespace
 
+TEST_CASE("the viewer refuses results that do not fit into memory", "[view][viewer]") {
+  CHECK_NOTHROW(check_viewer_memory("r.h5", 1000000, 1000000, 570000000));
+  CHECK_NOTHROW(check_viewer_memory("r.h5", 1000000, 1000000, 0));
+  CHECK_THROWS_WITH(
+      check_viewer_memory("r.h5", 100032000, 100000, std::size_t{16} << 30),
+      "r.h5: found 100032000 facets, which take about 20.5 GiB to view; expected at most 16.0 GiB, three quarters of what is free on "
+      "this machine; 'sunfleck render' draws results of any size");
+}
+
 TEST_CASE_METHOD(Fixture, "the viewer serves its page at once and the result when it is read", "[view][viewer]") {
   ViewerService service({file});
   CHECK(answer(service, "/").status == 200);

@@ -77,6 +77,9 @@ struct LightSource {
   Read sunlit;      ///< [count][2] fraction of the side that the sun reaches; may be empty
 };
 
+/// Reads from a light in memory, which must outlive it, over `facets` facets.
+LightSource light_source(const FacetLight& light, std::size_t facets);
+
 /// What draw_map() needs of a map, read in the same way.
 struct MapSource {
   std::vector<std::string> title;  ///< lines over the legend
