@@ -130,15 +130,20 @@ ViewerScene::ViewerScene(const std::string& file) : file_(file) {
   for (std::uint32_t f = 0; f < n; ++f) organ_facets_[next[scene_.organ[f]]++] = f;
 
   exact_ready_ = copies;
-  building_ = std::async(std::launch::async, [this] {
-                if (exact_ready_) return;
-                {
-                  const std::lock_guard lock(hdf5());
-                  drawn_ = std::make_unique<DrawnScene>(*result_);
-                }
-                rays_ = std::make_unique<PlacedRays>(*drawn_);
-                exact_ready_ = true;
-              }).share();
+}
+
+void ViewerScene::build_exact() const {
+  std::call_once(begun_, [this] {
+    building_ = std::async(std::launch::async, [this] {
+                  if (exact_ready_) return;
+                  {
+                    const std::lock_guard lock(hdf5());
+                    drawn_ = std::make_unique<DrawnScene>(*result_);
+                  }
+                  rays_ = std::make_unique<PlacedRays>(*drawn_);
+                  exact_ready_ = true;
+                }).share();
+  });
 }
 
 ViewerScene::~ViewerScene() {
@@ -164,6 +169,7 @@ Vec3 ViewerScene::normal(std::size_t facet) const {
 }
 
 void ViewerScene::wait_for_exact() const {
+  build_exact();
   building_.get();
 }
 
@@ -184,6 +190,7 @@ std::shared_ptr<const ViewerMap> ViewerScene::map(const std::string& quantity, s
   }
   made->linear = made->map.scale;
   if (made->map.names.empty()) made->logarithmic = scale_for(plant_values(made->map, scene_), true);
+  build_exact();
   maps_.push_front({quantity, band, state, made});
   if (maps_.size() > maps_kept) maps_.pop_back();
   return made;
@@ -197,6 +204,7 @@ std::shared_ptr<const ViewerLight> ViewerScene::light(std::size_t state) const {
     const std::lock_guard file(hdf5());
     made->stored = stored_light(*result_, scene_, state);
   }
+  build_exact();
   made->bands = colour_bands(bands());
   for (const auto& material : scene_.materials) {
     auto& row = made->surfaces.emplace_back();
@@ -232,6 +240,7 @@ std::shared_ptr<const NaturalPaint> paint_of(const DrawnScene& scene, const Plac
 std::shared_ptr<const NaturalPaint> ViewerScene::natural(std::size_t state, bool wait) const {
   if (!exact_ready_ && !wait) return nullptr;
   const auto stored = light(state);
+  build_exact();
   std::shared_future<std::shared_ptr<const NaturalPaint>> future;
   {
     const std::lock_guard lock(reading_);

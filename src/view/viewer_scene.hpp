@@ -97,6 +97,9 @@ class ViewerScene {
   std::vector<float> row(const std::string& dataset, std::size_t state, std::size_t row) const;
 
  private:
+  /// Begins to build the exact tree: after the first values are read, so that the first picture need not wait for the file.
+  void build_exact() const;
+
   std::string file_;
   FileStamp stamp_;
   std::unique_ptr<Result> result_;
@@ -106,10 +109,11 @@ class ViewerScene {
   std::vector<float> organ_area_;
   Framing framing_;
   std::unique_ptr<QuickRays> quick_;  ///< none where the exact tree is there at once
-  std::unique_ptr<DrawnScene> drawn_;
-  std::unique_ptr<PlacedRays> rays_;  ///< both written once, before exact_ready_
-  std::atomic<bool> exact_ready_{false};
-  std::shared_future<void> building_;
+  mutable std::unique_ptr<DrawnScene> drawn_;
+  mutable std::unique_ptr<PlacedRays> rays_;  ///< both written once, before exact_ready_
+  mutable std::atomic<bool> exact_ready_{false};
+  mutable std::once_flag begun_;
+  mutable std::shared_future<void> building_;
 
   mutable std::mutex reading_;  ///< guards the file and the caches below
   struct CachedMap {
