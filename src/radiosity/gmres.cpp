@@ -75,7 +75,6 @@ GmresResult gmres(const std::function<void(const Field& x, Field& kx)>& apply, c
     return w;
   };
   x = b;  // exact where nothing is scattered
-  Field r(b.size()), kx(b.size());
   result.spectral_radius.assign(columns, 0.0);
   std::vector<double> target(columns);
   for (std::size_t c = 0; c < columns; ++c) target[c] = tolerance * scale[c];
@@ -88,10 +87,11 @@ GmresResult gmres(const std::function<void(const Field& x, Field& kx)>& apply, c
   const int longest = std::clamp(static_cast<int>(basis_bytes / (b.size() * sizeof(float) + 1)), shortest_cycle, longest_cycle);
   for (int iteration = 0;;) {
     progress.check();
-    apply(x, kx);
+    Field r(b.size());
+    apply(x, r);
     ++iteration;
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, b.size(), 8192), [&](const auto& range) {
-      for (std::size_t i = range.begin(); i < range.end(); ++i) r[i] = b[i] - x[i] + kx[i];
+      for (std::size_t i = range.begin(); i < range.end(); ++i) r[i] = b[i] - x[i] + r[i];
     });
     auto beta = norm(r);
     const double residual = worst(beta);
@@ -120,7 +120,8 @@ GmresResult gmres(const std::function<void(const Field& x, Field& kx)>& apply, c
     for (std::size_t c = 0; c < columns; ++c)
       if (beta[c] <= enough[c]) beta[c] = 0.0;
     const int cycle = std::max(1, std::min(longest, most_iterations - iteration));
-    std::vector<Field> v(1, r);
+    std::vector<Field> v;
+    v.push_back(std::move(r));
     std::vector<double> inverse(columns);
     for (std::size_t c = 0; c < columns; ++c) inverse[c] = beta[c] > 0 ? 1.0 / beta[c] : 0.0;
     multiply(v[0], inverse, columns);
@@ -132,9 +133,9 @@ GmresResult gmres(const std::function<void(const Field& x, Field& kx)>& apply, c
     std::vector<int> steps_of(columns, 0);
     for (; steps < cycle;) {
       Field w(b.size());
-      apply(v[steps], kx);
+      apply(v[steps], w);
       tbb::parallel_for(tbb::blocked_range<std::size_t>(0, b.size(), 8192), [&](const auto& range) {
-        for (std::size_t i = range.begin(); i < range.end(); ++i) w[i] = v[steps][i] - kx[i];
+        for (std::size_t i = range.begin(); i < range.end(); ++i) w[i] = v[steps][i] - w[i];
       });
       ++iteration;
       std::vector<std::vector<double>> column_h(columns);
@@ -178,7 +179,7 @@ GmresResult gmres(const std::function<void(const Field& x, Field& kx)>& apply, c
       multiply(w, inverse, columns);
       v.push_back(std::move(w));
     }
-    result.fields = std::max(result.fields, v.size() + 3);  // with r, K x and the next direction
+    result.fields = std::max(result.fields, v.size() + 1);  // with the next direction
     for (std::size_t c = 0; c < columns; ++c)
       result.spectral_radius[c] = std::max(result.spectral_radius[c], largest_eigenvalue(hessenberg[c]));
     std::vector<std::vector<double>> y(columns, std::vector<double>(steps, 0.0));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
 #include <sunfleck/core/sampling.hpp>
@@ -19,9 +20,10 @@ std::vector<bool> interior_sides(const Elements& e, double pitch, std::uint64_t 
   std::uint32_t organs = 0;
   for (const auto o : e.organ_of_row) organs = std::max(organs, o + 1);
   std::vector<std::atomic<std::uint32_t>> all(2 * organs), inside(2 * organs), own(2 * organs);
+  tbb::enumerable_thread_specific<LineBundle> bundles;
   tbb::parallel_for(std::uint32_t{0}, directions, [&](std::uint32_t d) {
     if (progress.cancelled()) return;
-    thread_local LineBundle bundle;
+    LineBundle& bundle = bundles.local();
     const Vec3 direction = hemisphere_direction(d, directions, mix(seed, interior_stream));
     trace_lines(e.surface, project_set_member(e.surface, direction, d, pitch, mix(seed, interior_stream, 1)), bundle);
     const auto organ_side = [&](std::uint32_t cell_side) { return 2 * e.organ_of_row[e.row_of_cell[cell_side >> 1]] + (cell_side & 1u); };

@@ -1,16 +1,18 @@
 #include "line_links.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <numeric>
 #include <optional>
 
+#include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
 
 #include <sunfleck/core/memory.hpp>
+#include <sunfleck/core/release_memory.hpp>
 #include <sunfleck/core/sampling.hpp>
 
 #include "line_collector.hpp"
@@ -44,6 +46,7 @@ class HalfBuilder {
       far_.of_side.assign(sides * channels, 0);
       far_.through.assign(tree_->size() * channels, 0);
       far_.linked.assign(tree_->size() * channels, 0);
+      far_.node_bits = static_cast<int>(std::bit_width(tree_->size()));
       by_node_.resize(tree_->size() + 1);
     }
   }
@@ -212,7 +215,7 @@ class HalfBuilder {
     }
   }
 
-  /// Equal links become one with a count: bucket by receiving node, sort each bucket.
+  /// Equal links become one with a count: bucket by receiving node, sort each bucket. Bins rise from call to call.
   void merge_far(std::uint32_t bin, const std::vector<FarPair>& far) {
     std::fill(by_node_.begin(), by_node_.end(), 0u);
     for (const auto& p : far) ++by_node_[p.low_node + 1];
@@ -224,9 +227,8 @@ class HalfBuilder {
       std::sort(other_.begin() + static_cast<std::ptrdiff_t>(begin), other_.begin() + static_cast<std::ptrdiff_t>(end));
       for (std::size_t k = begin; k < end;) {
         std::size_t last = k + 1;
-        while (last < end && other_[last] == other_[k] && last - k < std::numeric_limits<std::uint16_t>::max()) ++last;
-        merged_.push_back(
-            {static_cast<std::uint32_t>(node), other_[k], static_cast<std::uint16_t>(last - k), static_cast<std::uint16_t>(bin)});
+        while (last < end && other_[last] == other_[k] && last - k < far_.most_count()) ++last;
+        merged_[bin].push_back({static_cast<std::uint32_t>(node), far_.packed(other_[k], last - k)});
         k = last;
       }
       begin = end;
@@ -246,26 +248,34 @@ class HalfBuilder {
       for (std::uint32_t q = 0; q < channels; ++q)
         far_.through[up * channels + q] += far_.through[node * channels + q] - far_.linked[node * channels + q];
     }
-    far_.first_link.assign(tree_->size() + 1, 0);
-    for (const auto& m : merged_) {
-      ++far_.first_link[m.low + 1];
-      ++far_.first_link[m.high + 1];
-    }
-    for (std::size_t i = 0; i < tree_->size(); ++i) far_.first_link[i + 1] += far_.first_link[i];
+    const std::size_t slots = tree_->size() * channels;
+    far_.first_link.assign(slots + 1, 0);
+    const auto low_slot = [](const MergedLink& m, std::uint32_t bin) { return std::size_t{m.low} * channels + 2 * bin; };
+    const auto high_slot = [&](const MergedLink& m, std::uint32_t bin) {
+      return std::size_t{far_.node_of(m.high)} * channels + 2 * bin + 1;
+    };
+    for (std::uint32_t bin = 0; bin < direction_bins; ++bin)
+      for (const auto& m : merged_[bin]) {
+        ++far_.first_link[low_slot(m, bin) + 1];
+        ++far_.first_link[high_slot(m, bin) + 1];
+      }
+    for (std::size_t i = 0; i < slots; ++i) far_.first_link[i + 1] += far_.first_link[i];
     far_.links.resize(far_.first_link.back());
-    std::vector<std::uint32_t> cursor(far_.first_link.begin(), far_.first_link.end() - 1);
-    for (const auto& m : merged_) {
-      const auto above = static_cast<std::uint16_t>(2 * m.bin), below = static_cast<std::uint16_t>(2 * m.bin + 1);
-      far_.links[cursor[m.low]++] = {m.high * channels + below, m.count, above};
-      far_.links[cursor[m.high]++] = {m.low * channels + above, m.count, below};
+    // starts of rows serve as cursors, and stand one row further when all is placed
+    for (std::uint32_t bin = 0; bin < direction_bins; ++bin) {
+      for (const auto& m : merged_[bin]) {
+        far_.links[far_.first_link[low_slot(m, bin)]++] = m.high;
+        far_.links[far_.first_link[high_slot(m, bin)]++] = far_.packed(m.low, far_.count_of(m.high));
+      }
+      merged_[bin] = {};
     }
-    merged_ = {};
+    std::copy_backward(far_.first_link.begin(), far_.first_link.end() - 1, far_.first_link.end());
+    far_.first_link[0] = 0;
     half.far = std::move(far_);
   }
 
   struct MergedLink {
-    std::uint32_t low, high;
-    std::uint16_t count, bin;
+    std::uint32_t low, high;  ///< node; node and count, packed
   };
 
   const Elements& e_;
@@ -280,7 +290,7 @@ class HalfBuilder {
   NearBuilder near_;
   std::vector<SidePair> enclosed_pairs_;
   FarField far_;
-  std::vector<MergedLink> merged_;
+  std::array<std::vector<MergedLink>, direction_bins> merged_;
   std::vector<std::uint32_t> by_node_, other_;
 };
 
@@ -376,13 +386,14 @@ LineLinks line_links(const Elements& e, const ClusterTree* tree, const SunReflec
   for (const auto& bin : bins) queue.insert(queue.end(), bin.begin(), bin.end());
   const auto batch_size = static_cast<std::size_t>(line_batch(e.size(), settings.density));
   std::vector<DirectionLines> found(std::min(batch_size, queue.size()));
+  tbb::enumerable_thread_specific<LineBundle> bundles;
   for (std::size_t first = 0; first < queue.size(); first += batch_size) {
     const std::vector<std::uint32_t> batch(queue.begin() + static_cast<std::ptrdiff_t>(first),
                                            queue.begin() + static_cast<std::ptrdiff_t>(std::min(queue.size(), first + batch_size)));
     found.resize(batch.size());
     tbb::parallel_for(std::size_t{0}, batch.size(), [&](std::size_t i) {
       if (progress.cancelled()) return;
-      thread_local LineBundle bundle;
+      LineBundle& bundle = bundles.local();
       trace_lines(e.surface, projection[batch[i]], bundle);
       collector.collect(bundle, found[i]);
       found[i].outside = outside_focus(e.surface, projection[batch[i]]);
@@ -420,6 +431,8 @@ LineLinks line_links(const Elements& e, const ClusterTree* tree, const SunReflec
     progress.fraction("lines", static_cast<double>(done) / directions);
   }
   found = {};
+  bundles.clear();
+  if (e.size() > 100'000) release_freed_memory();
   links.whole.resize(e.size());
   std::iota(links.whole.begin(), links.whole.end(), 0u);
   const auto& inside = collector.inside();

@@ -26,13 +26,16 @@ struct FarField {
   std::vector<std::uint8_t> of_side;      ///< [sides of elements][channels] lines; empty without far links
   std::vector<std::uint32_t> through;     ///< [nodes][channels] lines of the node's elements that run far
   std::vector<std::uint32_t> linked;      ///< [nodes][channels] of these, lines whose link is at this node; the others pass to the parent
-  std::vector<std::uint32_t> first_link;  ///< [nodes + 1]
-  struct Link {
-    std::uint32_t source;  ///< emitting node * channels + its channel
-    std::uint16_t count;
-    std::uint16_t channel;  ///< of the receiving node
-  };
-  std::vector<Link> links;
+  std::vector<std::uint32_t> first_link;  ///< [nodes * channels + 1]
+  /// What a node receives along channel q, from nodes that send along q ^ 1: the emitting node in the low `node_bits`, in the others how
+  /// many lines less one; what does not fit goes on in a further link.
+  std::vector<std::uint32_t> links;
+  int node_bits = 0;
+
+  std::size_t most_count() const { return std::size_t{1} << (32 - node_bits); }
+  std::uint32_t packed(std::uint32_t node, std::size_t count) const { return node | static_cast<std::uint32_t>(count - 1) << node_bits; }
+  std::uint32_t node_of(std::uint32_t link) const { return link & ((1u << node_bits) - 1); }
+  std::uint32_t count_of(std::uint32_t link) const { return (link >> node_bits) + 1; }
 };
 
 /// One of two independent sets of lines. The two take turns, E_a = E0 + F_a R E_b and E_b = E0 + F_b R E_a: light that goes back and

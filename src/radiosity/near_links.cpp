@@ -5,6 +5,7 @@
 #include <bit>
 
 #include <fmt/format.h>
+#include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
 #include <sunfleck/core/error.hpp>
@@ -17,6 +18,7 @@ namespace {
 constexpr int most_column_bits = 28;
 constexpr int most_block_bits = 11;  ///< the lines of a block are sorted within a processor's cache
 constexpr int digit_bits = 11;
+constexpr std::size_t largest_piece = 65535;  ///< rows begin at 16 bits
 
 /// Sorts by the lowest `bits` bits, digit by digit; `other` is scratch space.
 void radix_sort(std::vector<std::uint32_t>& values, std::vector<std::uint32_t>& other, int bits) {
@@ -39,12 +41,16 @@ void radix_sort(std::vector<std::uint32_t>& values, std::vector<std::uint32_t>& 
 
 std::size_t NearLinks::size() const {
   std::size_t n = 0;
-  for (const auto& b : blocks_) n += b.size();
+  for (const auto& block : blocks_)
+    for (const auto& piece : block) n += piece.used;
   return n;
 }
 
 std::size_t NearLinks::bytes() const {
-  return size() * sizeof(std::uint32_t) + bytes_of(end_);
+  std::size_t n = bytes_of(at_);
+  for (const auto& block : blocks_)
+    for (const auto& piece : block) n += piece.size * sizeof(std::uint32_t) + sizeof(Piece);
+  return n;
 }
 
 NearBuilder::NearBuilder(std::size_t most_sides)
@@ -58,11 +64,11 @@ NearBuilder::NearBuilder(std::size_t most_sides)
   waiting_.resize((most_sides >> block_bits_) + 1);
 }
 
-void NearBuilder::grow(Waiting& w) {
-  const std::size_t size = std::clamp<std::size_t>(w.size / 8, 128, 65536);
-  w.chunks.push_back({std::make_unique_for_overwrite<std::uint32_t[]>(size), size});
+void NearBuilder::grow(Waiting& w, std::size_t least) {
+  const std::size_t size = std::max(least, std::clamp<std::size_t>(w.size / 8, 128, largest_piece));
+  w.pieces.push_back({std::make_unique_for_overwrite<std::uint32_t[]>(size), static_cast<std::uint32_t>(size), 0});
   w.size += size;
-  w.at = w.chunks.back().ends.get();
+  w.at = w.pieces.back().links.get();
   w.end = w.at + size;
 }
 
@@ -72,34 +78,43 @@ NearLinks NearBuilder::finish(std::size_t rows, std::vector<float>& lines) {
   links.column_bits_ = column_bits_;
   const std::size_t in_block = std::size_t{1} << block_bits_, blocks = (rows + in_block - 1) >> block_bits_;
   links.blocks_.resize(blocks);
-  links.end_.resize(rows);
+  links.at_.resize(rows);
+  tbb::enumerable_thread_specific<std::array<std::vector<std::uint32_t>, 2>> scratch;
   tbb::parallel_for(std::size_t{0}, blocks, [&](std::size_t b) {
-    thread_local std::vector<std::uint32_t> ends, other;
+    auto& [ends, other] = scratch.local();
     Waiting& w = waiting_[b];
     ends.clear();
-    for (auto& c : w.chunks) {
-      const std::uint32_t* begin = c.ends.get();
-      ends.insert(ends.end(), begin, &c == &w.chunks.back() ? w.at : begin + c.size);
-      c.ends.reset();
+    for (auto& piece : w.pieces) {
+      const std::uint32_t* begin = piece.links.get();
+      ends.insert(ends.end(), begin, &piece == &w.pieces.back() ? w.at : begin + piece.size);
     }
-    w = {};
     radix_sort(ends, other, block_bits_ + column_bits_);
-    // equal ends become one link, in place
+    if (w.pieces.empty()) grow(w);
     const std::uint32_t column_mask = (1u << column_bits_) - 1;
     const std::size_t most = std::size_t{1} << (32 - column_bits_);
-    std::size_t out = 0, k = 0;
+    std::size_t k = 0, p = 0;
     for (std::size_t row = b << block_bits_, end_row = std::min(rows, row + in_block), r = 0; row < end_row; ++row, ++r) {
+      // equal ends become one link, in place
       const std::size_t begin = k;
+      std::size_t out = begin;
       while (k < ends.size() && ends[k] >> column_bits_ == r) {
         std::size_t last = k + 1;
         while (last < ends.size() && ends[last] == ends[k] && last - k < most) ++last;
         ends[out++] = (ends[k] & column_mask) | static_cast<std::uint32_t>(last - k - 1) << column_bits_;
         k = last;
       }
-      links.end_[row] = static_cast<std::uint32_t>(out);
       lines[row] += static_cast<float>(k - begin);
+      const std::size_t size = out - begin;
+      while (w.pieces[p].size - w.pieces[p].used < size || w.pieces[p].used > largest_piece)
+        if (++p == w.pieces.size()) grow(w, size);
+      auto& piece = w.pieces[p];
+      links.at_[row] = static_cast<std::uint32_t>(p) << 16 | piece.used;
+      std::copy_n(ends.data() + begin, size, piece.links.get() + piece.used);
+      piece.used += static_cast<std::uint32_t>(size);
     }
-    links.blocks_[b].assign(ends.begin(), ends.begin() + static_cast<std::ptrdiff_t>(out));
+    w.pieces.resize(p + 1);
+    links.blocks_[b] = std::move(w.pieces);
+    w = {};
   });
   return links;
 }

@@ -130,12 +130,12 @@ class Planner {
     const std::uint64_t sides = 2 * plan_.elements, slots = plan_.clusters * channels;
     // of each half: starts of the rows of near links, lines and how many of them are open; far lines of sides and nodes; the sun's first
     // reflection
-    const std::uint64_t half = 4 * sides * word + (tree ? sides * channels + 2 * slots * word + plan_.clusters * word : 0) +
-                               (sun_ || lamps_ ? sides * columns_ * word : 0);
-    plan_.memory.emplace_back("links", 2 * half + whole(near * sizeof(std::uint32_t) + far * sizeof(FarField::Link)) +
+    const std::uint64_t half =
+        4 * sides * word + (tree ? sides * channels + 3 * slots * word : 0) + (sun_ || lamps_ ? sides * columns_ * word : 0);
+    plan_.memory.emplace_back("links", 2 * half + whole(near * sizeof(std::uint32_t) + far * sizeof(std::uint32_t)) +
                                            plan_.elements * word + (tree ? tree->bytes() : 0));
-    // 7 fields of the solver, 3 and a basis of the iteration; how far the basis grows, the optics alone do not tell
-    constexpr std::uint64_t fields_of_iteration = 7 + 3 + 8;
+    // 5 fields of the solver, 1 and a basis of the iteration; how far the basis grows, the optics alone do not tell
+    constexpr std::uint64_t fields_of_iteration = 5 + 1 + 6;
     plan_.memory.emplace_back("fields",
                               fields_of_iteration * sides * columns_ * word + (4 * sides + (tree ? 2 * slots * (1 + columns_) : 0)) * word);
     // a pair of sides waits in 8 bytes; all that a batch of directions meets is kept in full

@@ -10,6 +10,7 @@
 
 #include <sunfleck/core/error.hpp>
 #include <sunfleck/core/memory.hpp>
+#include <sunfleck/core/release_memory.hpp>
 #include <sunfleck/radiosity/sensor_gather.hpp>
 #include <sunfleck/visibility/endless_light.hpp>
 
@@ -23,6 +24,8 @@ namespace sunfleck {
 namespace {
 
 constexpr int most_iterations = 400;
+constexpr std::size_t conserved_block = 4096;  ///< cells, or parts, that are summed together
+constexpr double most_scaling = 0.05;          ///< of scattered light, to make the balance close
 
 class RadiositySolver {
  public:
@@ -54,6 +57,7 @@ class RadiositySolver {
     }
     watch = {};
     elements_ = make_elements(scene_, facets_, settings_);
+    release_pages();
     timed("elements", watch);
     report_.counts.emplace_back("elements", elements_.size());
     report_.counts.emplace_back("cells", elements_.surface.cells());
@@ -82,6 +86,11 @@ class RadiositySolver {
       for (std::size_t b = 0; b < bands_; ++b)
         albedo = std::max(albedo, static_cast<double>(std::max(m.reflectance_front[b], m.reflectance_back[b])) + m.transmittance[b]);
     return albedo;
+  }
+
+  /// Pays from some 100 MB on.
+  void release_pages() const {
+    if (elements_.size() > 100'000) release_freed_memory();
   }
 
   void timed(const char* phase, const Stopwatch& watch) { add_seconds(report_.timings, phase, watch.seconds()); }
@@ -265,6 +274,7 @@ class RadiositySolver {
     Stopwatch watch;
     std::optional<ClusterTree> tree;
     if (settings_.method == RadiosityMethod::clustering) tree = make_cluster_tree(facets_, elements_);
+    elements_.tree = {};
     LineLinks links =
         line_links(elements_, tree ? &*tree : nullptr, sun_reflection(), light_sources(scene_.states).skies, settings_, progress_);
     if (!links.clustered) tree.reset();
@@ -274,11 +284,13 @@ class RadiositySolver {
       sky_from_lines(facets_, elements_, sums, links.area_of_line, direct_);
     }
     enclosed_part_ = links.enclosed_part;
+    whole_ = links.whole;
     enclosed_ = links.enclosed;
     // what sees the sky is not enclosed: other lines found the two fractions, and together they must not exceed the hemisphere
     for (std::size_t c = 0; c < enclosed_.size(); ++c) enclosed_[c] = std::min({enclosed_[c], rest(2 * c), rest(2 * c + 1)});
     part_sources(links);
     for (auto& half : links.half) half.sky = {};
+    release_pages();
     timed("lines", watch);
     report_.memory.emplace_back("direct", direct_.bytes());
     const std::size_t sides = links.sides();
@@ -307,6 +319,8 @@ class RadiositySolver {
       }
       gather.emplace_back(half, tree ? &*tree : nullptr, sky_lines, columns_, cluster_fields);
     }
+    const Field returned = returned_reflection(links);
+    for (auto& half : links.half) half.lines = half.open_up = half.open_down = {};
     std::vector<std::uint32_t> material(links.whole.size());
     for (std::size_t i = 0; i < material.size(); ++i) material[i] = elements_.material[links.whole[i]];
     const Reflection reflection(facets_, std::move(material), states_);
@@ -325,7 +339,6 @@ class RadiositySolver {
       });
     };
     Field gathered(values);
-    const Field returned = returned_reflection(links);
     for (std::size_t h = 0; h < 2; ++h) {
       if (returned.empty())
         std::fill(gathered.begin(), gathered.end(), 0.0f);
@@ -377,13 +390,98 @@ class RadiositySolver {
           report_.balance[c / bands_][c % bands_].escaped +=
               0.5 * static_cast<double>(part_area_[i / 2]) * b[i * columns_ + c] * escape[h][i];
     }
-    for (std::size_t h = 0; h < 2; ++h)
-      for (std::size_t c = 0; c < links.half[h].escaped_reflection.size(); ++c)
-        report_.balance[c / bands_][c % bands_].escaped += links.half[h].escaped_reflection[c] * links.area_of_line;
-    report_.memory.emplace_back("fields", (7 + result.fields) * bytes_of(irradiance[0]) + gather[0].bytes() + gather[1].bytes() +
-                                              bytes_of(cluster_fields.sent) + bytes_of(cluster_fields.received));
+    conserve(first_reflection(links));
+    report_.memory.emplace_back("fields", ((returned.empty() ? 5 : 6) + result.fields) * bytes_of(irradiance[0]) + gather[0].bytes() +
+                                              gather[1].bytes() + bytes_of(cluster_fields.sent) + bytes_of(cluster_fields.received));
     timed("iteration", watch);
     progress_.line(fmt::format("{} applications of the operator, residual {:.1e}", result.residuals.size(), result.residuals.back()));
+  }
+
+  /// The first reflection of sun and lamps as lines counted it [columns] [W]: all of it, and what left the scene.
+  struct FirstReflection {
+    std::vector<double> all, escaped;
+  };
+
+  FirstReflection first_reflection(const LineLinks& links) const {
+    FirstReflection first{std::vector<double>(columns_, 0.0), std::vector<double>(columns_, 0.0)};
+    for (const auto& half : links.half) {
+      for (std::size_t c = 0; c < half.escaped_reflection.size(); ++c) {
+        first.escaped[c] += half.escaped_reflection[c] * links.area_of_line;
+        first.all[c] += half.escaped_reflection[c] * links.area_of_line;
+      }
+      for (const auto* met : {&half.first_reflection, &half.withheld_reflection})
+        for (std::size_t i = 0; i < met->size(); ++i) first.all[i % columns_] += static_cast<double>((*met)[i]) * links.area_of_line;
+    }
+    return first;
+  }
+
+  /// Scattered light of a state and band must be absorbed or escape, all of it. Lines sample the area of what scatters, and cells share it
+  /// out by their true areas, so sums differ by the sampling: both the light gathered and that which escapes are multiplied by one factor.
+  /// Of the first reflection, lines tell the share that escapes; how much there is, cells tell.
+  void conserve(const FirstReflection& first) {
+    std::vector<double> direct(columns_, 0.0), followed(columns_, 0.0), absorbed(columns_, 0.0);
+    const auto albedo = [&](const Optics& m, std::size_t side, std::size_t band) {
+      return static_cast<double>(side == 0 ? m.reflectance_front[band] : m.reflectance_back[band]) + m.transmittance[band];
+    };
+    const auto blocks = [](std::size_t n) { return (n + conserved_block - 1) / conserved_block; };
+    const auto sum_blocks = [&](std::size_t n, std::vector<double>& total, const auto& add) {
+      std::vector<double> partial(blocks(n) * columns_, 0.0);
+      tbb::parallel_for(std::size_t{0}, blocks(n), [&](std::size_t b) {
+        for (std::size_t i = b * conserved_block, end = std::min(n, i + conserved_block); i < end; ++i)
+          add(i, partial.data() + b * columns_);
+      });
+      for (std::size_t k = 0; k < partial.size(); ++k) total[k % columns_] += partial[k];
+    };
+    const auto& s = elements_.surface;
+    const auto sum_direct = [&](std::vector<double>& total, const auto& light) {
+      sum_blocks(s.cells(), total, [&](std::size_t c, double* sum) {
+        const auto t = elements_.row_of_cell[c];
+        if (s.split[t] == 0) return;
+        const auto& m = facets_.materials[facets_.optics[elements_.order[t]]];
+        for (std::size_t side = 0; side < 2; ++side)
+          for (std::size_t column = 0; column < columns_; ++column)
+            sum[column] += static_cast<double>(s.cell_area[t]) * light(t, 2 * c + side, column / bands_, column % bands_) *
+                           albedo(m, side, column % bands_);
+      });
+    };
+    if (!direct_.sunlit.empty() || !lamp_.empty())
+      sum_direct(followed, [&](std::size_t t, std::size_t i, std::size_t state, std::size_t band) {
+        return static_cast<double>(sun_irradiance(t, i, state, band)) + lamp_.at(i, state, band, bands_);
+      });
+    direct = followed;
+    if (!direct_.sky.empty())
+      sum_direct(direct, [&](std::size_t, std::size_t i, std::size_t state, std::size_t band) {
+        return static_cast<double>(sky_irradiance(i, state, band));
+      });
+    const std::size_t parts = gathered_.size() / (2 * columns_);
+    sum_blocks(parts, absorbed, [&](std::size_t i, double* sum) {
+      const bool inside = i >= elements_.size();
+      const auto& m = facets_.materials[elements_.material[inside ? whole_[i] : i]];
+      for (std::size_t row = 2 * i, end = row + 2; row < end; ++row) {
+        const double area = static_cast<double>(part_area_[i]) * (inside ? 1.0 : mean_rest_[row]);
+        for (std::size_t column = 0; column < columns_; ++column)
+          sum[column] += area * gathered_[row * columns_ + column] * (1.0 - albedo(m, row % 2, column % bands_));
+      }
+    });
+    std::vector<float> factor(columns_);
+    double most = 0;
+    for (std::size_t column = 0; column < columns_; ++column) {
+      double scale = 1.0;
+      auto& escaped = report_.balance[column / bands_][column % bands_].escaped;
+      if (first.all[column] > 0.0) escaped += first.escaped[column] * followed[column] / first.all[column];
+      const double found = absorbed[column] + escaped;
+      if (found > 0.0 && direct[column] > 0.0) scale = direct[column] / found;
+      if (std::fabs(scale - 1.0) > most_scaling) scale = 1.0;  // not the sampling: let the balance show it
+      most = std::max(most, std::fabs(scale - 1.0));
+      escaped *= scale;
+      factor[column] = static_cast<float>(scale);
+    }
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, 2 * parts, 4096), [&](const auto& range) {
+      for (std::size_t i = range.begin(); i < range.end(); ++i)
+        for (std::size_t c = 0; c < columns_; ++c) gathered_[i * columns_ + c] *= factor[c];
+    });
+    progress_.line(
+        fmt::format("{:.1e} of the scattered light had been missed by sampling: scaled, so that all of it is absorbed or escapes", most));
   }
 
   /// E = direct + (fraction that is not open sky) x gathered, averaged over the facet's cells.
@@ -404,10 +502,11 @@ class RadiositySolver {
       if (any_sun) sunlit.assign(states_ * count * 2, 0.0f);
       tbb::parallel_for(std::size_t{0}, blocks_in_chunk, [&](std::size_t b) {
         std::fill(partial[b].begin(), partial[b].end(), Balance{});
+        FacetLight light;
         for (std::size_t i = b * block, end = std::min(count, (b + 1) * block); i < end; ++i) {
           const std::size_t t = row_of_facet_[first + i];
           if (s.split[t] == 0) continue;
-          facet_row(t, first + i, i, count, irradiance, sunlit, partial[b]);
+          facet_row(t, first + i, i, count, light, irradiance, sunlit, partial[b]);
         }
       });
       for (const auto& p : partial)
@@ -439,37 +538,78 @@ class RadiositySolver {
     return (open - inside) * seen + inside * seen_inside;
   }
 
-  void facet_row(std::size_t t, std::size_t facet, std::size_t i, std::size_t count, std::vector<float>& irradiance,
-                 std::vector<float>& sunlit, std::vector<Balance>& balance) {
+  /// Light on the two sides of a facet, means over its cells.
+  struct FacetLight {
+    std::vector<float> scattered;  ///< [2][columns] irradiance [W m^-2]
+    std::vector<float> sky, lit;   ///< [2][skies], [2][suns] as in DirectLight
+    std::vector<float> lamp;       ///< [2][sets of lamps][b] irradiance [W m^-2]
+  };
+
+  void light_of_facet(std::size_t t, FacetLight& light) const {
     const auto& s = elements_.surface;
-    const auto& optics = facets_.materials[facets_.optics[facet]];
     const std::uint32_t begin = s.first_cell[t], end = s.first_cell[t + 1];
     const float share = 1.0f / static_cast<float>(end - begin);
-    const double area = facets_.area[facet];
-    for (std::size_t state = 0; state < states_; ++state) {
-      for (std::size_t band = 0; band < bands_; ++band) {
-        const std::size_t column = state * bands_ + band;
-        double absorbed = 0;
-        for (std::size_t side = 0; side < 2; ++side) {
-          float direct = 0.0f, scattered = 0.0f;
-          for (std::uint32_t c = begin; c < end; ++c) {
-            direct += share * (sky_irradiance(2 * c + side, state, band) + sun_irradiance(t, 2 * c + side, state, band) +
-                               lamp_.at(2 * c + side, state, band, bands_));
-            scattered += share * scattered_irradiance(c, side, column);
-          }
-          const float e = direct + scattered;
-          irradiance[((state * count + i) * 2 + side) * bands_ + band] = e;
-          balance[column].incident += area * direct;
-          absorbed += (1.0 - (side == 0 ? optics.reflectance_front[band] : optics.reflectance_back[band]) - optics.transmittance[band]) * e;
-        }
-        (facet < facets_.plant_facets ? balance[column].leaves : balance[column].ground) += area * absorbed;
+    const std::size_t skies = direct_.sky.size(), suns = direct_.sunlit.size();
+    light.scattered.assign(gathered_.empty() ? 0 : 2 * columns_, 0.0f);
+    light.sky.assign(2 * skies, 0.0f);
+    light.lit.assign(2 * suns, 0.0f);
+    const std::size_t lamp_values = lamp_.sets.size() * bands_;
+    light.lamp.assign(2 * lamp_values, 0.0f);
+    const auto add = [&](std::size_t part, std::size_t side, float part_share) {
+      const float* from = gathered_.data() + (2 * part + side) * columns_;
+      float* to = light.scattered.data() + side * columns_;
+      for (std::size_t column = 0; column < columns_; ++column) to[column] += part_share * from[column];
+    };
+    for (std::uint32_t c = begin; c < end; ++c)
+      for (std::size_t side = 0; side < 2; ++side) {
+        const std::size_t cell_side = 2 * std::size_t{c} + side;
+        for (std::size_t k = 0; k < skies; ++k) light.sky[side * skies + k] += share * direct_.sky[k][cell_side];
+        for (std::size_t k = 0; k < suns; ++k) light.lit[side * suns + k] += share * direct_.sunlit[k][cell_side];
+        for (std::size_t k = 0; k < lamp_values; ++k)
+          light.lamp[side * lamp_values + k] += share * lamp_.sets[k / bands_][cell_side * bands_ + k % bands_];
+        if (gathered_.empty()) continue;
+        const auto element = elements_.element_of_cell[c];
+        const float inside = enclosed(c);
+        add(element, side, share * (rest(cell_side) - inside));
+        if (inside > 0.0f) add(enclosed_part_[element], side, share * inside);
       }
-      if (const auto k = direct_.sun_of_state[state]; k != DirectLight::none)
-        for (std::size_t side = 0; side < 2; ++side) {
-          float lit = 0.0f;
-          for (std::uint32_t c = begin; c < end; ++c) lit += share * direct_.sunlit[k][2 * c + side];
-          sunlit[(state * count + i) * 2 + side] = lit;
+  }
+
+  void facet_row(std::size_t t, std::size_t facet, std::size_t i, std::size_t count, FacetLight& light, std::vector<float>& irradiance,
+                 std::vector<float>& sunlit, std::vector<Balance>& balance) {
+    const auto& optics = facets_.materials[facets_.optics[facet]];
+    const double area = facets_.area[facet];
+    const bool is_plant = facet < facets_.plant_facets;
+    const std::size_t skies = direct_.sky.size(), suns = direct_.sunlit.size();
+    light_of_facet(t, light);
+    for (std::size_t state = 0; state < states_; ++state) {
+      const auto& sky = scene_.states[state].sky;
+      const auto& sun = scene_.states[state].sun;
+      const auto sky_row = direct_.sky_of_state[state], sun_row = direct_.sun_of_state[state];
+      const auto lamp_row = lamp_.empty() ? Lamps::none : lamp_.set_of_state[state];
+      for (std::size_t side = 0; side < 2; ++side) {
+        const float seen = sky_row == DirectLight::none ? 0.0f : light.sky[side * skies + sky_row];
+        float lit = 0.0f;
+        if (sun_row != DirectLight::none) {
+          const float cosine = direct_.sun_cosine[sun_row][t];
+          sunlit[(state * count + i) * 2 + side] = light.lit[side * suns + sun_row];
+          lit = light.lit[side * suns + sun_row] * std::max(0.0f, side == 0 ? cosine : -cosine);
         }
+        for (std::size_t band = 0; band < bands_; ++band) {
+          float direct = 0.0f;
+          if (sky_row != DirectLight::none) direct += static_cast<float>(sky->irradiance[band]) * seen;
+          if (sun_row != DirectLight::none) direct += static_cast<float>(sun->irradiance[band]) * lit;
+          if (lamp_row != Lamps::none) direct += light.lamp[(side * lamp_.sets.size() + lamp_row) * bands_ + band];
+          const std::size_t column = state * bands_ + band;
+          const float e = gathered_.empty() ? direct : direct + light.scattered[side * columns_ + column];
+          irradiance[((state * count + i) * 2 + side) * bands_ + band] = e;
+          auto& sums = balance[column];
+          sums.incident += area * direct;
+          const double kept =
+              (1.0 - (side == 0 ? optics.reflectance_front[band] : optics.reflectance_back[band])) - optics.transmittance[band];
+          (is_plant ? sums.leaves : sums.ground) += area * kept * e;
+        }
+      }
     }
   }
 
@@ -488,7 +628,7 @@ class RadiositySolver {
   std::vector<std::uint32_t> row_of_facet_;
   Field source_[2], gathered_;                               ///< source_: of each half
   std::vector<float> part_rest_[2], mean_rest_, part_area_;  ///< mean_rest_: area mean over the part's cells, from both halves
-  std::vector<std::uint32_t> enclosed_part_;
+  std::vector<std::uint32_t> enclosed_part_, whole_;
   std::vector<float> enclosed_;
   SolveReport report_;
 };

@@ -79,6 +79,25 @@ std::size_t Gather::bytes() const {
 
 namespace {
 
+/// Lines of a side along each channel. Most are few or none: all channels together, without branches, are quicker.
+struct ChannelLines {
+  float count[channels];
+  explicit ChannelLines(const std::uint8_t* lines) {
+    for (std::uint32_t q = 0; q < channels; ++q) count[q] = static_cast<float>(lines[q]);
+  }
+  void add_to(float* sum, float value) const {
+    for (std::uint32_t q = 0; q < channels; ++q) sum[q] += count[q] * value;
+  }
+  float times(const float* field) const {
+    constexpr std::uint32_t lanes = 8;
+    static_assert(channels % lanes == 0);
+    float sum[lanes] = {};
+    for (std::uint32_t q = 0; q < channels; q += lanes)
+      for (std::uint32_t k = 0; k < lanes; ++k) sum[k] += count[q + k] * field[q + k];
+    return ((sum[0] + sum[4]) + (sum[1] + sum[5])) + ((sum[2] + sum[6]) + (sum[3] + sum[7]));
+  }
+};
+
 /// Rows [begin, end) of near links. Columns = 0: their number is only known at run time.
 template <std::size_t Columns>
 void near_rows(const NearLinks& near, const float* b, float* s, std::size_t begin, std::size_t end, std::size_t run_time_columns) {
@@ -130,12 +149,8 @@ void Gather::gather(const float* b, float* s) const {
       float* to = s + i * n;
       if (i < element_sides) {
         const float* field = fields_.received.data() + std::size_t{tree_->cluster_of_element[i >> 1]} * channels * n;
-        const std::uint8_t* lines = half_.far.of_side.data() + i * channels;
-        for (std::uint32_t q = 0; q < channels; ++q) {
-          if (lines[q] == 0) continue;
-          const auto count = static_cast<float>(lines[q]);
-          for (std::size_t c = 0; c < n; ++c) to[c] += count * field[q * n + c];
-        }
+        const ChannelLines lines(half_.far.of_side.data() + i * channels);
+        for (std::size_t c = 0; c < n; ++c) to[c] += lines.times(field + c * channels);
       }
       for (std::size_t c = 0; c < n; ++c) to[c] *= inverse_[i];
     }
@@ -164,12 +179,8 @@ void Gather::far_up(const float* b) const {
       std::fill(sum, sum + row, 0.0f);
       for (std::uint32_t k = t.first_element[node]; k < t.first_element[node + 1]; ++k)
         for (std::size_t side = 2 * std::size_t{t.elements[k]}, end = side + 2; side < end; ++side) {
-          const std::uint8_t* lines = far.of_side.data() + side * channels;
-          for (std::uint32_t q = 0; q < channels; ++q) {
-            if (lines[q] == 0) continue;
-            const auto count = static_cast<float>(lines[q]);
-            for (std::size_t c = 0; c < n; ++c) sum[q * n + c] += count * b[side * n + c];
-          }
+          const ChannelLines lines(far.of_side.data() + side * channels);
+          for (std::size_t c = 0; c < n; ++c) lines.add_to(sum + c * channels, b[side * n + c]);
         }
     }
   });
@@ -183,9 +194,9 @@ void Gather::far_up(const float* b) const {
         const std::size_t slot = node * channels + q;
         if (far.through[slot] == 0) continue;
         const auto on = static_cast<float>(far.through[slot] - far.linked[slot]);
-        for (std::size_t c = 0; c < n; ++c) {
-          mean[q * n + c] *= inverse_through_[slot];
-          if (parent_sum) parent_sum[q * n + c] += on * mean[q * n + c];
+        for (std::size_t k = q; k < row; k += channels) {
+          mean[k] *= inverse_through_[slot];
+          if (parent_sum) parent_sum[k] += on * mean[k];
         }
       }
     }
@@ -194,17 +205,18 @@ void Gather::far_up(const float* b) const {
 
 void Gather::far_across() const {
   const auto& far = half_.far;
-  const std::size_t n = columns_, row = channels * n;
+  const std::size_t row = channels * columns_;
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, tree_->size(), 16), [&](const auto& range) {
     for (std::size_t node = range.begin(); node < range.end(); ++node) {
       float* sum = fields_.received.data() + node * row;
       std::fill(sum, sum + row, 0.0f);
-      for (std::uint32_t k = far.first_link[node]; k < far.first_link[node + 1]; ++k) {
-        const auto& link = far.links[k];
-        const float* from = fields_.sent.data() + std::size_t{link.source} * n;
-        float* to = sum + link.channel * n;
-        const auto count = static_cast<float>(link.count);
-        for (std::size_t c = 0; c < n; ++c) to[c] += count * from[c];
+      for (std::uint32_t q = 0; q < channels; ++q) {
+        float* to = sum + q;
+        for (std::uint32_t k = far.first_link[node * channels + q], end = far.first_link[node * channels + q + 1]; k < end; ++k) {
+          const float* from = fields_.sent.data() + std::size_t{far.node_of(far.links[k])} * row + (q ^ 1u);
+          const auto count = static_cast<float>(far.count_of(far.links[k]));
+          for (std::size_t c = 0; c < row; c += channels) to[c] += count * from[c];
+        }
       }
     }
   });
@@ -213,7 +225,7 @@ void Gather::far_across() const {
 void Gather::far_down() const {
   const auto& t = *tree_;
   const auto& far = half_.far;
-  const std::size_t n = columns_, row = channels * n;
+  const std::size_t row = channels * columns_;
   for (const auto& level : t.levels)
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, level.size(), 64), [&](const auto& range) {
       for (std::size_t k = range.begin(); k < range.end(); ++k) {
@@ -225,9 +237,9 @@ void Gather::far_down() const {
           const std::size_t slot = node * channels + q;
           if (far.through[slot] == 0) continue;
           const auto on = static_cast<float>(far.through[slot] - far.linked[slot]);
-          for (std::size_t c = 0; c < n; ++c) {
-            const float above = parent_mean ? parent_mean[q * n + c] : 0.0f;
-            mean[q * n + c] = (mean[q * n + c] + on * above) * inverse_through_[slot];
+          for (std::size_t i = q; i < row; i += channels) {
+            const float above = parent_mean ? parent_mean[i] : 0.0f;
+            mean[i] = (mean[i] + on * above) * inverse_through_[slot];
           }
         }
       }

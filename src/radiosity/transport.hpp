@@ -33,7 +33,7 @@ class Reflection {
   std::vector<float> front_, back_, through_;  ///< [materials][columns]; through_ is empty where nothing transmits
 };
 
-/// Mean radiosity that each node sends and receives along each channel: [nodes][channels][columns].
+/// Mean radiosity that each node sends and receives along each channel: [nodes][columns][channels].
 struct ClusterFields {
   Field sent, received;
 };

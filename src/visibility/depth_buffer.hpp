@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include <sunfleck/visibility/surface.hpp>
@@ -14,10 +15,18 @@ namespace sunfleck {
 
 inline constexpr std::uint32_t nothing = 0xffffffffu;
 
+/// Pixels that are drawn together; buffers end with as many that nobody reads.
+inline constexpr int drawn_together = 8;
+
 /// What is nearest to the eye, for a strip of rows.
 struct DepthBuffer {
   std::vector<float> depth;         ///< larger is nearer
   std::vector<std::uint32_t> code;  ///< 2 * cell + (1 if the front faces the eye)
+
+  void clear(std::size_t pixels) {
+    depth.assign(pixels + drawn_together, -std::numeric_limits<float>::max());
+    code.assign(pixels + drawn_together, nothing);
+  }
 };
 
 /// Of two coincident fragments, is the candidate in front? For facets i < j, j lies on the front side of i; cells rise with facets.
@@ -27,18 +36,21 @@ inline bool coincident_in_front(std::uint32_t candidate, std::uint32_t standing)
   return later == front_of_lower_up;
 }
 
-/// A run of fragments of one triangle: depth and code are functions of the position in the run.
+/// A run of fragments of one triangle: depth and code are functions of the position in the run, also somewhat beyond its end.
 template <class Depth, class Code>
 void draw_run(int count, float tolerance, float* depth, std::uint32_t* standing, const Depth& depth_at, const Code& code_at) {
   int ties = 0;
-  for (int i = 0; i < count; ++i) {  // without branches, so that it becomes vector code
-    const float z = depth_at(i), d = depth[i];
-    const std::uint32_t code = code_at(i), old = standing[i];
-    const bool nearer = z > d + tolerance;
-    ties |= static_cast<int>(z > d - tolerance) & static_cast<int>(!nearer);
-    depth[i] = nearer ? z : d;
-    standing[i] = nearer ? code : old;
-  }
+  // runs are short: always a whole vector, without branches; what lies beyond the run stays as it is
+  for (int begin = 0; begin < count; begin += drawn_together)
+    for (int k = 0; k < drawn_together; ++k) {
+      const int i = begin + k;
+      const float z = depth_at(i), d = depth[i];
+      const std::uint32_t code = code_at(i), old = standing[i];
+      const int inside = static_cast<int>(i < count), above = static_cast<int>(z > d + tolerance) & inside;
+      ties |= static_cast<int>(z > d - tolerance) & (inside ^ above);
+      depth[i] = above ? z : d;
+      standing[i] = above ? code : old;
+    }
   if (!ties) return;
   for (int i = 0; i < count; ++i) {
     const float z = depth_at(i);
@@ -55,8 +67,8 @@ void draw_run(int count, float tolerance, float* depth, std::uint32_t* standing,
 template <class Met>
 void draw_span(const ProjectedTriangle& t, std::uint32_t base, std::uint32_t front, float sign, float depth_offset, int count, float dx,
                float dy, float tolerance, float* depth, std::uint32_t* code, Met&& met) {
-  const auto depth_at = [&t, dx, dy, sign, depth_offset](int i) {
-    return sign * t.depth_at(dx + static_cast<float>(i), dy) + depth_offset;
+  const auto depth_at = [plane = t.depth, low = t.depth_low, high = t.depth_high, dx, dy, sign, depth_offset](int i) {
+    return sign * std::min(std::max(plane.at(dx + static_cast<float>(i), dy), low), high) + depth_offset;
   };
   if (t.split == 1) {
     met(base, count);
@@ -66,7 +78,7 @@ void draw_span(const ProjectedTriangle& t, std::uint32_t base, std::uint32_t fro
   constexpr int chunk = 64;
   for (int begin = 0; begin < count; begin += chunk) {
     const int n = std::min(chunk, count - begin);
-    alignas(64) std::uint32_t codes[chunk];
+    alignas(64) std::uint32_t codes[chunk + drawn_together] = {};
     const float x0 = dx + static_cast<float>(begin), u0 = t.u.at(x0, dy), v0 = t.v.at(x0, dy), du = t.u.per_x, dv = t.v.per_x;
     const int split = t.split;
     for (int i = 0; i < n; ++i) {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include <tbb/parallel_for.h>
@@ -187,8 +186,7 @@ class LitCellsCounter {
     if (bins_[t].empty()) return;
     thread_local DepthBuffer buffer;
     thread_local std::vector<std::uint32_t> first_code;
-    buffer.depth.assign(tile * tile, -std::numeric_limits<float>::max());
-    buffer.code.assign(tile * tile, nothing);
+    buffer.clear(tile * tile);
     first_code.clear();
     const double x_low = origin_x_ + static_cast<double>(t % tiles_x_) * tile, y_low = origin_y_ + static_cast<double>(t / tiles_x_) * tile;
     const int columns = std::min(tile, columns_ - static_cast<int>(t % tiles_x_) * tile);

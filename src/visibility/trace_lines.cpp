@@ -8,12 +8,7 @@ namespace sunfleck {
 
 namespace {
 
-struct Fragment {
-  std::uint32_t pixel;
-  std::uint32_t facet;  ///< with the orientation in bit 0 (1 = front up)
-  std::uint32_t cell;
-  float depth;
-};
+using Fragment = LineBundle::Fragment;
 
 /// Is b above a, where the two coincide? For facets i < j, j lies on the front side of i.
 bool coincident_above(const Fragment& b, const Fragment& a) {
@@ -24,7 +19,7 @@ bool coincident_above(const Fragment& b, const Fragment& a) {
 }  // namespace
 
 void trace_lines(const Surface& surface, const Projection& p, LineBundle& bundle) {
-  thread_local std::vector<Fragment> found, sorted;
+  auto &found = bundle.found, &sorted = bundle.sorted;
   found.clear();
   rasterise(surface, p, nullptr, 0, surface.size(), 0, p.rows,
             [&](const ProjectedTriangle& t, int row, int column, int count, float dx, float dy) {

@@ -44,12 +44,19 @@ void count_visible(const Surface& surface, const Projection& projection, bool fr
 
 /// All fragments of a projection, sorted along each line.
 struct LineBundle {
+  struct Fragment {
+    std::uint32_t pixel;
+    std::uint32_t facet;  ///< with the orientation in bit 0 (1 = front up)
+    std::uint32_t cell;
+    float depth;
+  };
   std::vector<std::uint32_t> start;  ///< [columns * rows + 1]
   /// Upward side of each fragment, from the lowest to the highest: 2 * cell + (0 if the front faces the direction, else 1).
   /// `side ^ 1` is the downward side.
   std::vector<std::uint32_t> side;
   std::vector<float> depth;  ///< along the line, same order; times depth_to_length = distance [m]
   double depth_to_length = 1.0;
+  std::vector<Fragment> found, sorted;  ///< working space
 };
 
 /// Traces all lines. Coincident fragments (closer than the surface's depth tolerance) are ordered so that, for facets i < j, j

@@ -1,0 +1,17 @@
+#include <sunfleck/core/release_memory.hpp>
+
+#include <cstdlib>
+
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+
+namespace sunfleck {
+
+void release_freed_memory() {
+#ifdef __GLIBC__
+  malloc_trim(0);
+#endif
+}
+
+}  // namespace sunfleck
