@@ -32,7 +32,7 @@ RadiosityDensity density_of(Quality quality) {
     case Quality::fine:
       d = {.directions = 224,
            .lines_per_element = 4.0,
-           .elements_per_organ = 8.0,
+           .elements_per_organ = 12.0,
            .sky_directions = 288,
            .sky_lines_per_organ = 16.0,
            .sun_samples = 8,
