@@ -103,11 +103,13 @@ class Document:
     def claims(self):
         out = []
         for scene, aim in (('coffee', 20), ('canopy_1m', 50)):
-            if scene not in [s.name for s in self.scenes]:
+            if scene not in [s.name for s in self.scenes + self.skipped]:  # of another set of scenes
                 continue
             ratio, method = self.ratio(scene)
             what = 'At equal error (1 %% PAR and 2 %% NIR per organ), solving `%s` is at least %d times cheaper than tracing its paths' % (scene, aim)
-            if ratio is None:
+            if scene not in [s.name for s in self.scenes]:
+                out.append('- %s: **not known**, it was not run.' % what)
+            elif ratio is None:
                 out.append('- %s: **cannot be told**, no setting that was run reaches it.' % what)
             else:
                 out.append('- %s: **%s**, %.0f times with `%s`.' % (what, 'met' if ratio >= aim else 'missed', ratio, method))

@@ -87,8 +87,8 @@ def hash_of_scene(path):
 class Runs:
     """Finished runs of one program, in work/runs.jsonl; references in work/references."""
 
-    def __init__(self, program, work, threads):
-        self.program, self.work, self.threads = program, work, threads
+    def __init__(self, program, work, threads, commit):
+        self.program, self.work, self.threads, self.commit = program, work, threads, commit
         self.hash = sha256(program)[:16]
         os.makedirs(os.path.join(work, 'references'), exist_ok=True)
         self.file = os.path.join(work, 'runs.jsonl')
@@ -114,7 +114,7 @@ class Runs:
     def _solve(self, scene_path, result, seed, arguments):
         arguments = ['solve', scene_path, '-o', result, '--threads', str(self.threads), '--seed', str(seed), *arguments]
         _, code, cpu, wall = run(self.program, *arguments, accepted=(0, 3))
-        return {'program': self.hash, 'threads': self.threads, 'arguments': arguments, 'exit': code, 'cpu_s': cpu, 'wall_s': wall,
+        return {'program': self.hash, 'commit': self.commit, 'threads': self.threads, 'arguments': arguments, 'exit': code, 'cpu_s': cpu, 'wall_s': wall,
                 **facts_of(result)}
 
     def _keep(self, record):
