@@ -38,6 +38,14 @@ void define_solve(CLI::App& verb, SolveOptions& o) {
                   "organs that the check path-traces (default 240): more of them narrow its interval")
       ->type_name("N")
       ->check(count_from(2, 1e6));
+  verb.add_option("--only", o.only,
+                  "open only these placements, such as 'tile[3]/*' or 'coffee 17', in place of the scene's own [solve] only: what "
+                  "stands about them lights and shades them, what is farther away is not even listed (methods instantiation and reference)")
+      ->type_name("PATH");
+  verb.add_option("--stop-at", o.stop_at,
+                  "keep what whole structures absorb instead of their facets and organs: a type such as 'branch', 'plant', the name of a "
+                  "plant or group, size=METRES or leaf_count=N (method instantiation)")
+      ->type_name("WHAT");
   verb.add_option("--certificate-rays", o.certificate_rays,
                   "rays that the check spends, about (default 0.6 to 2 million, by the size of the scene): more of them lessen its noise")
       ->type_name("N")

@@ -13,10 +13,12 @@
 #include <sunfleck/core/memory.hpp>
 #include <sunfleck/core/version.hpp>
 #include <sunfleck/format/scene_toml.hpp>
+#include <sunfleck/policy/policy_toml.hpp>
 #include <sunfleck/instantiation/fineness.hpp>
 #include <sunfleck/radiosity/fineness.hpp>
 #include <sunfleck/reference/path_tracer.hpp>
 #include <sunfleck/result/result_writer.hpp>
+#include <sunfleck/result/structure_sums.hpp>
 #include <sunfleck/scene/facets.hpp>
 
 #include "cli/error_goal.hpp"
@@ -45,6 +47,12 @@ void say_what_is_dropped(const FacetScene& facets, Progress& progress) {
         fmt::format("note: {} no area: kept as rows of zeros, not traced", counted(facets.zero_area_facets, "facet has", "facets have")));
 }
 
+/// What the policies that plants name say, if any does.
+std::optional<Classification> classes_of(const Scene& scene) {
+  const bool any = std::any_of(scene.plants.begin(), scene.plants.end(), [](const auto& p) { return !p.policy_file.empty(); });
+  return any ? std::optional(classify(scene, read_policies(scene))) : std::nullopt;
+}
+
 SolveReport run_method(const MethodChoice& choice, const Scene& scene, const PlacedScene& placed, const std::optional<FacetScene>& facets,
                        const SolveOptions& options, std::uint64_t seed, IrradianceSink& sink, Progress& progress) {
   if (choice.method == "instantiation") {
@@ -52,16 +60,23 @@ SolveReport run_method(const MethodChoice& choice, const Scene& scene, const Pla
     settings.seed = seed;
     settings.threads = options.threads;
     settings.density = choice.fineness ? instantiation_density_at(*choice.fineness) : instantiation_density(choice.quality);
+    const auto classes = classes_of(scene);
+    settings.classes = classes ? &*classes : nullptr;
     return solve_instantiation(scene, placed, settings, sink, progress);
   }
   if (choice.method == "reference") {
     ReferenceSettings settings;
+    if (placed.partial) settings.facets = placed.facets;
     settings.seed = seed;
     settings.threads = options.threads;
     if (options.samples)
       settings.samples = *options.samples;
     else if (scene.solve.samples)
       settings.samples = *scene.solve.samples;
+    if (placed.partial) {
+      const PlacedScene wide = with_surroundings(placed);
+      return trace_reference(scene, FacetRows(scene, wide), settings, sink, progress);
+    }
     if (!facets) return trace_reference(scene, FacetRows(scene, placed), settings, sink, progress);
     return trace_reference(scene, *facets, settings, sink, progress);
   }
@@ -78,6 +93,15 @@ bool mostly_copies(const Scene& scene, const PlacedScene& placed) {
   std::uint64_t unique = placed.ground.size();
   for (std::size_t p = 0; p < scene.plants.size(); ++p) unique += placed.plant_facets[p];
   return placed.facets > 2'000'000 && placed.facets / 4 > unique;
+}
+
+/// `only` and `stop_at` leave out work where structures are opened one by one, and rays that nobody asks for.
+void refuse_depth(const Scene& scene, const std::string& method) {
+  if (method == "instantiation" || (scene.solve.only.empty() && scene.solve.stop_at.empty())) return;
+  const bool stops = !scene.solve.stop_at.empty();
+  if (stops || method != "reference")
+    throw InputError(location(scene.file, 0, stops ? "solve.stop_at" : "solve.only"), "it with method " + method,
+                     stops ? "method instantiation" : "method instantiation or reference");
 }
 
 bool wants_certificate(const MethodChoice& choice, const Scene& scene, const PlacedScene& placed, const SolveOptions& options) {
@@ -195,7 +219,9 @@ int verb_solve(const SolveOptions& options, Progress& progress) {
     wanted = named_errors(*options.error);
   }
 
-  const Scene scene = read_scene(options.scene);
+  Scene scene = read_scene(options.scene);
+  if (!options.only.empty()) scene.solve.only = options.only;
+  if (options.stop_at) scene.solve.stop_at = stop_from_text(*options.stop_at);
   std::optional<Refinement> refinement;
   MethodChoice choice = choose_method(options.method, options.error ? "draft" : options.quality, scene, progress);
   if (options.error) {
@@ -204,9 +230,13 @@ int verb_solve(const SolveOptions& options, Progress& progress) {
     choice.fineness = refinement->first();
   }
   const std::uint64_t seed = options.seed.value_or(scene.solve.seed.value_or(1));
+  refuse_depth(scene, choice.method);
   const PlacedScene placed = place(scene);
+  const bool sums = stops_inside(scene, placed);  // structures within plants have rows instead of facets
+  const PlacedScene layout = sums ? structures_layout(scene, placed) : PlacedScene{};
   std::optional<FacetScene> facets;  // every copy written out, for the methods that need it
-  if (choice.method != "instantiation" && !(choice.method == "reference" && mostly_copies(scene, placed))) facets = expand(scene);
+  if (choice.method != "instantiation" && !(choice.method == "reference" && (placed.partial || mostly_copies(scene, placed))))
+    facets = expand(scene);
   const double read_seconds = total.seconds();
   say_what_was_read(scene, placed, read_seconds, progress);
   if (facets) say_what_is_dropped(*facets, progress);
@@ -220,7 +250,7 @@ int verb_solve(const SolveOptions& options, Progress& progress) {
   if (options.certificate_organs) checking.organs = *options.certificate_organs;
   if (options.certificate_rays) checking.rays = *options.certificate_rays;
   std::vector<ChosenOrgan> chosen;
-  if (wants_certificate(choice, scene, placed, options)) chosen = choose_organs(rows, checking);
+  if (!sums && wants_certificate(choice, scene, placed, options)) chosen = choose_organs(rows, checking);
 
   std::optional<ResultWriter> writer;
   SolveReport report;
@@ -228,18 +258,27 @@ int verb_solve(const SolveOptions& options, Progress& progress) {
   std::optional<Certificate> certificate;
   double earlier_seconds = 0.0, certificate_seconds = 0.0;
   for (bool again = true; again;) {
-    writer.emplace(options.result, scene, placed, scene.output, software_version(), choice.method);
+    writer.emplace(options.result, scene, sums ? layout : placed, scene.output, software_version(), choice.method);
     std::vector<std::uint64_t> organs;
     for (const auto& c : chosen) organs.push_back(c.organ);
     if (!organs.empty()) writer->keep_totals(std::move(organs));
-    report = run_method(choice, scene, placed, facets, options, seed, *writer, progress);
+    std::optional<StructureSums> structures;
+    if (sums) structures.emplace(scene, placed, layout, *writer);
+    report = run_method(choice, scene, placed, facets, options, seed, structures ? static_cast<IrradianceSink&>(*structures) : *writer,
+                        progress);
+    if (structures) structures->append(report.structures);
     again = false;
     if (chosen.empty()) {
       if (refinement) progress.line("note: no organ of a plant has an area: there is no error to judge");
       break;
     }
     const Stopwatch watch;
-    if (!traced) traced = trace_organs(scene, rows, facets ? RayScene(*facets) : RayScene(rows), chosen, checking, progress);
+    if (!traced) {
+      const PlacedScene wide = placed.closed.empty() ? PlacedScene{} : with_surroundings(placed);
+      const FacetRows wide_rows(scene, wide);
+      const RayScene rays = facets ? RayScene(*facets) : RayScene(placed.closed.empty() ? rows : wide_rows);
+      traced = trace_organs(scene, rows, rays, chosen, checking, progress);
+    }
     certificate = judge(*traced, writer->totals(), report.balance);
     certificate_seconds += watch.seconds();
     again = refinement && refine_further(scene, report, *certificate, *refinement, choice, progress);

@@ -9,8 +9,25 @@ TomlSchema output_schema() {
   return TomlSchema::of({"facets", "fields"});
 }
 TomlSchema solve_schema() {
-  return TomlSchema::of({"quality", "method", "seed", "certificate", "samples"});
+  return TomlSchema::of({"quality", "method", "seed", "certificate", "samples", "only"},
+                        {{"stop_at", TomlSchema::of({"size", "leaf_count"})}});
 }
+
+namespace {
+
+void read_stop(const TomlValue& value, StopAt& out) {
+  if (!value.is_table()) {
+    out.type = value.text();
+    if (out.type.empty()) value.fail("a type of structures such as \"axis\", or { size = ... } [m], or { leaf_count = ... }");
+    return;
+  }
+  const auto size = value.get("size"), leaves = value.get("leaf_count");
+  if (size.has_value() == leaves.has_value()) value.fail("either `size` [m] or `leaf_count`");
+  if (size) out.size = size->positive();
+  if (leaves) out.leaf_count = static_cast<std::uint64_t>(leaves->integer(1, std::numeric_limits<std::int64_t>::max()));
+}
+
+}  // namespace
 
 void read_output(const TomlValue& root, Scene& scene) {
   const auto output = root.get("output");
@@ -38,6 +55,12 @@ void read_solve(const TomlValue& root, Scene& scene) {
   if (const auto seed = solve->get("seed"))
     scene.solve.seed = static_cast<std::uint64_t>(seed->integer(0, std::numeric_limits<std::int64_t>::max()));
   if (const auto certificate = solve->get("certificate")) scene.solve.certificate = certificate->flag();
+  if (const auto only = solve->get("only")) {
+    if (!only->is_array()) only->fail("an array of placements, such as [\"tile 3/*\", \"coffee 17\"]");
+    for (const auto& item : only->items()) scene.solve.only.push_back(item.text());
+    if (scene.solve.only.empty()) only->fail("at least one placement, or no `only` to open all");
+  }
+  if (const auto stop = solve->get("stop_at")) read_stop(*stop, scene.solve.stop_at);
   if (const auto samples = solve->get("samples")) scene.solve.samples = static_cast<std::uint32_t>(samples->integer(1, 1 << 30));
 }
 

@@ -9,6 +9,7 @@
 #include <sunfleck/core/error.hpp>
 #include <sunfleck/core/memory.hpp>
 #include <sunfleck/core/sampling.hpp>
+#include <sunfleck/radiosity/interior.hpp>
 
 namespace sunfleck {
 
@@ -16,13 +17,13 @@ namespace {
 
 constexpr int octahedron = 96;  // cells along an edge of the table of directions
 constexpr std::size_t segments_wanted = 288;
-constexpr std::size_t row_ranges = 4;  // parts in which rows are made, one thread each
-constexpr std::uint32_t line_begins = 1u << 31;
+constexpr std::size_t row_ranges = 4;                             // parts in which rows are made, one thread each
+constexpr std::uint32_t line_begins = 1u << 31, dark = 1u << 30;  // the latter: the hit is enclosed
 
 /// What one direction found: sides along lines from low to high (the upward side; its other bit is the downward one), the first of each
 /// line marked; and which sides look out through which field.
 struct Traced {
-  std::vector<std::uint32_t> along;
+  std::vector<std::uint32_t> along;                          ///< sides of cells
   std::vector<std::pair<std::uint32_t, std::uint32_t>> out;  ///< (side, field)
   std::vector<std::pair<std::uint32_t, std::array<float, 3>>> points;
   std::vector<std::array<float, 6>> segments;
@@ -107,11 +108,11 @@ LineOperator::Rows make_rows(std::size_t rows, const Visit& visit) {
 
 }  // namespace
 
-LineOperator::LineOperator(const Elements& elements, const OperatorDensity& density, std::uint64_t seed, Progress& progress)
-    : directions_(density.directions), pixels_(density.field_pixels) {
-  const std::size_t sides = 2 * elements.size();
-  if (sides >= line_begins) throw Error("an original of more than 2^30 elements");
-  trace(elements, density, seed, progress);
+LineOperator::LineOperator(const Elements& elements, const std::vector<std::uint8_t>& interior, const OperatorDensity& density,
+                           std::uint64_t seed, Progress& progress, Seen seen)
+    : directions_(density.directions), pixels_(density.field_pixels), seen_(seen) {
+  if (2 * elements.surface.cells() >= dark) throw Error("an original of more than 2^29 cells");
+  trace(elements, interior, density, seed, progress);
   tabulate_directions();
   stand_in.resize(elements.size());
   std::uint32_t last = 0;
@@ -128,8 +129,10 @@ LineOperator::LineOperator(const Elements& elements, const OperatorDensity& dens
   }
 }
 
-void LineOperator::trace(const Elements& elements, const OperatorDensity& density, std::uint64_t seed, Progress& progress) {
+void LineOperator::trace(const Elements& elements, const std::vector<std::uint8_t>& interior, const OperatorDensity& density,
+                         std::uint64_t seed, Progress& progress) {
   const Surface& surface = elements.surface;
+  const auto side_of = [&](std::uint32_t cell_side) { return 2 * elements.element_of_cell[cell_side >> 1] + (cell_side & 1u); };
   const double pitch = std::sqrt(0.5 * elements.organ_area / density.lines_per_organ);
   line_area = pitch * pitch;
   const std::size_t in_direction = std::size_t{pixels_} * pixels_;
@@ -146,7 +149,6 @@ void LineOperator::trace(const Elements& elements, const OperatorDensity& densit
     auto& t = traced[d];
     t.fragments = bundle.side.size();
     t.along.reserve(bundle.side.size());
-    const auto side_of = [&](std::uint32_t cell_side) { return 2 * elements.element_of_cell[cell_side >> 1] + (cell_side & 1u); };
     const Vec3 x = p.x_row * line_area, y = p.y_row * line_area;  // pixel to metres
     std::vector<std::vector<std::array<float, 3>>> chosen(2 * in_direction);
     const std::size_t first_field = 2 * std::size_t{d} * in_direction;
@@ -158,7 +160,11 @@ void LineOperator::trace(const Elements& elements, const OperatorDensity& densit
         const std::size_t q = static_cast<std::size_t>(row) * p.columns + column;
         const auto begin = bundle.start[q], end = bundle.start[q + 1];
         if (begin == end) continue;
-        for (auto k = begin; k < end; ++k) t.along.push_back(side_of(bundle.side[k]) | (k == begin ? line_begins : 0u));
+        const std::size_t first = t.along.size();
+        t.along.insert(t.along.end(), bundle.side.begin() + begin, bundle.side.begin() + end);
+        if (!interior.empty())
+          each_enclosed(interior, bundle.side.data() + begin, end - begin, [&](std::uint32_t k) { t.along[first + k] |= dark; });
+        t.along[first] |= line_begins;
         const auto point_at = [&](std::uint32_t k) {
           return (column + 0.5 - p.x0) * x + (row + 0.5 - p.y0) * y + double{bundle.depth[k]} * p.direction;
         };
@@ -176,6 +182,7 @@ void LineOperator::trace(const Elements& elements, const OperatorDensity& densit
         for (std::size_t sense = 0; sense < 2; ++sense) {
           const auto k = sense == 0 ? end - 1 : begin;
           const std::size_t local = sense * in_direction + pixel;
+          if (t.along[first + (k - begin)] & dark) continue;
           t.out.emplace_back(side_of(bundle.side[k]) ^ static_cast<std::uint32_t>(sense), static_cast<std::uint32_t>(first_field + local));
           const auto seen = ++counts[first_field + local];
           auto slot = static_cast<std::size_t>(seen - 1);
@@ -195,10 +202,27 @@ void LineOperator::trace(const Elements& elements, const OperatorDensity& densit
   progress.check();
   const std::size_t sides = 2 * elements.size();
   lines.assign(elements.size(), 0);
+  std::vector<std::uint32_t> hits(interior.empty() ? 0 : surface.cells(), 0), inside_hits(hits);
   for (const auto& t : traced) {
     fragments += t.fragments;
     segments.insert(segments.end(), t.segments.begin(), t.segments.end());
-    for (const auto side : t.along) ++lines[(side & ~line_begins) >> 1];
+    for (const auto entry : t.along) {
+      const std::uint32_t cell = (entry & ~(line_begins | dark)) >> 1;
+      if (!interior.empty()) ++hits[cell];
+      if (entry & dark)
+        ++inside_hits[cell];
+      else
+        ++lines[elements.element_of_cell[cell]];
+    }
+  }
+  open_area = elements.area;
+  if (std::any_of(inside_hits.begin(), inside_hits.end(), [](std::uint32_t n) { return n > 0; })) {
+    enclosed.resize(surface.cells());
+    for (std::size_t c = 0; c < enclosed.size(); ++c) {
+      if (hits[c] > 0) enclosed[c] = static_cast<float>(inside_hits[c]) / static_cast<float>(hits[c]);
+      open_area[elements.element_of_cell[c]] -= enclosed[c] * surface.cell_area[elements.row_of_cell[c]];
+    }
+    for (auto& a : open_area) a = std::max(a, 0.0f);
   }
   for (std::size_t f = 0; f < field_lines.size(); ++f) field_lines[f] = static_cast<float>(counts[f]);
   point_start.assign(field_lines.size() + 1, 0);
@@ -219,10 +243,15 @@ void LineOperator::trace(const Elements& elements, const OperatorDensity& densit
   inside = make_rows(sides, [&](auto&& call) {
     for (const auto& t : traced)
       for (std::size_t k = 1; k < t.along.size(); ++k) {
-        if (t.along[k] & line_begins) continue;
+        if ((t.along[k] & line_begins) || ((t.along[k] | t.along[k - 1]) & dark)) continue;
         const std::uint32_t below = t.along[k - 1] & ~line_begins, above = t.along[k] ^ 1u;
-        call(below, above);
-        call(above, below);
+        if (seen_ == Seen::cells) {
+          call(side_of(below), above);
+          call(side_of(above), below);
+        } else {
+          call(side_of(below), side_of(above));
+          call(side_of(above), side_of(below));
+        }
       }
   });
 }

@@ -20,8 +20,16 @@ namespace sunfleck {
 /// where L_f is what comes in through f (radiance times pi). All weights of a row sum to 1, so light is neither made nor lost.
 class LineOperator {
  public:
+  /// What a side sees: the element on the line, or the very cell, so that a gather can tell the sunlit part of a leaf from the other.
+  enum class Seen { elements, cells };
+
   /// `seed` chooses the turns and shifts of the grids.
-  LineOperator(const Elements& elements, const OperatorDensity& density, std::uint64_t seed, Progress& progress);
+  /// `interior`: of interior_of_cells(). Hits that it encloses, as the base of a petiole in a stem, are in the dark and seen by nobody who
+  /// matters: they count in `enclosed` and nowhere else.
+  LineOperator(const Elements& elements, const std::vector<std::uint8_t>& interior, const OperatorDensity& density, std::uint64_t seed,
+               Progress& progress, Seen seen = Seen::elements);
+
+  Seen seen() const { return seen_; }
 
   std::uint32_t directions() const { return directions_; }
   std::uint32_t pixels() const { return pixels_; }
@@ -39,12 +47,15 @@ class LineOperator {
   struct Rows {
     static constexpr std::size_t padding = 16;  ///< entries beyond the last, so that loops may look ahead
     std::vector<std::uint64_t> start;           ///< [sides + 1]
-    std::vector<std::uint32_t> column;          ///< side or field
+    std::vector<std::uint32_t> column;          ///< side (of an element or a cell) or field
     std::vector<std::uint8_t> count;            ///< lines
   };
-  Rows inside;                                 ///< n_ij
-  Rows outside;                                ///< n_if
-  std::vector<std::uint32_t> lines;            ///< [elements] W_i
+  Rows inside;                       ///< n_ij
+  Rows outside;                      ///< n_if
+  std::vector<std::uint32_t> lines;  ///< [elements] W_i
+  std::vector<float> enclosed;       ///< [cells] fraction that is enclosed; empty if nothing is
+  std::vector<float> open_area;      ///< [elements] one-sided, of what is not enclosed [m^2]
+  float open(std::size_t cell) const { return enclosed.empty() ? 1.0f : 1.0f - enclosed[cell]; }
   std::vector<float> field_lines;              ///< [fields] lines that leave through each
   std::vector<std::uint32_t> point_start;      ///< [fields + 1]
   std::vector<std::array<float, 3>> points;    ///< where lines leave, chosen at random; relative to the surface's origin [m]
@@ -54,10 +65,12 @@ class LineOperator {
   std::uint64_t fragments = 0;
 
  private:
-  void trace(const Elements& elements, const OperatorDensity& density, std::uint64_t seed, Progress& progress);
+  void trace(const Elements& elements, const std::vector<std::uint8_t>& interior, const OperatorDensity& density, std::uint64_t seed,
+             Progress& progress);
   void tabulate_directions();
 
   std::uint32_t directions_ = 0, pixels_ = 0;
+  Seen seen_ = Seen::elements;
   std::vector<Projection> projections_;
   std::vector<std::uint16_t> nearest_;  ///< sense by octahedral map
 };

@@ -7,6 +7,7 @@
 #include <tbb/parallel_for.h>
 
 #include <sunfleck/core/sampling.hpp>
+#include <sunfleck/radiosity/interior.hpp>
 #include <sunfleck/scene/facets.hpp>
 
 #include "instantiation/coincident.hpp"
@@ -20,7 +21,10 @@ constexpr double tangled_share = 0.01;  // of lines inside a copy that meet anot
 constexpr std::uint64_t most_merged_facets = 300'000;
 constexpr std::uint64_t coarse_stream = 0x7d3f1c5b2e8a9604ULL;
 
-OriginalLight original_light(const Scene& scene, const PlacedScene& placed, const Original& original, double elements_per_organ) {
+}  // namespace
+
+OriginalLight original_light(const Scene& scene, const Approximation& approximation, const Original& original, double elements_per_organ,
+                             const OperatorDensity& density, std::uint64_t seed, Progress& progress) {
   Scene own;
   own.file = scene.file;
   own.bands = scene.bands;
@@ -29,10 +33,11 @@ OriginalLight original_light(const Scene& scene, const PlacedScene& placed, cons
   OriginalLight out;
   out.facet_of_part.push_back(0);
   for (const auto& part : original.parts) {
-    auto entry = scene.plants[part.plant];
+    auto entry = part.plant < scene.plants.size() ? scene.plants[part.plant] : approximation.pieces[part.plant - scene.plants.size()];
     entry.placements = {{part.map}};
+    const std::size_t entry_facets = entry.plant->facet_count();
     own.plants.push_back(std::move(entry));
-    out.facet_of_part.push_back(out.facet_of_part.back() + static_cast<std::uint32_t>(placed.plant_facets[part.plant]));
+    out.facet_of_part.push_back(out.facet_of_part.back() + static_cast<std::uint32_t>(entry_facets));
   }
   const FacetScene facets = expand(own);
   RadiositySettings settings;
@@ -40,8 +45,12 @@ OriginalLight original_light(const Scene& scene, const PlacedScene& placed, cons
   settings.density.elements_per_organ = elements_per_organ;
   out.elements = make_elements(own, facets, settings);
   out.facet_material = facets.optics;
+  const double pitch = std::sqrt(0.5 * out.elements.organ_area / density.lines_per_organ);
+  out.interior = interior_of_cells(out.elements, interior_sides(out.elements, pitch, seed, progress));
   return out;
 }
+
+namespace {
 
 /// Light on the ground varies over a tenth of a plant's size: larger facets are cut, as far as a few ten thousand parts go.
 void split_ground(const std::vector<Triangle>& ground, Members& out) {
@@ -55,6 +64,7 @@ void split_ground(const std::vector<Triangle>& ground, Members& out) {
     out.copies.ground = ground;
     return;
   }
+  out.copies.ground.clear();
   const double wanted = facet / static_cast<double>(ground.size()) / (0.1 * plant / static_cast<double>(out.copies.copies.size()));
   const double affordable = std::sqrt(40'000.0 / static_cast<double>(ground.size()));
   const int k = std::clamp(static_cast<int>(std::lround(std::min(wanted, affordable))), 1, 4);
@@ -69,23 +79,37 @@ void split_ground(const std::vector<Triangle>& ground, Members& out) {
   }
 }
 
-Members with_light(const Scene& scene, const PlacedScene& placed, Originals found, const OperatorDensity& coarse, double elements_per_organ,
-                   std::uint64_t seed, Progress& progress) {
+/// Pieces of plants are small and many: coarser fields do.
+OperatorDensity for_pieces(OperatorDensity d) {
+  d.directions = std::min(d.directions, 48u);
+  d.field_pixels = std::max(1u, d.field_pixels / 2);
+  return d;
+}
+
+Members with_light(const Scene& scene, const PlacedScene& placed, Approximation approximation, Originals found,
+                   const OperatorDensity& coarse, double elements_per_organ, std::uint64_t seed, Progress& progress) {
   Members out;
+  out.approximation = std::move(approximation);
   out.found = std::move(found);
+  out.stand_in = find_stand_ins(out.found);
+  out.originals.reserve(out.found.originals.size() + 1);  // `copies` points into it, and one more comes when a plant is opened
   for (std::size_t o = 0; o < out.found.originals.size(); ++o) {
     progress.check();
     progress.fraction("originals", static_cast<double>(o) / static_cast<double>(out.found.originals.size()));
-    out.originals.push_back(original_light(scene, placed, out.found.originals[o], elements_per_organ));
+    out.originals.push_back(original_light(scene, out.approximation, out.found.originals[o], elements_per_organ, coarse, seed, progress));
     auto& light = out.originals.back();
-    light.coarse = std::make_unique<LineOperator>(light.elements, coarse, mix(seed, coarse_stream, o), progress);
+    const bool piece = out.found.originals[o].parts.front().plant >= scene.plants.size();
+    light.coarse = std::make_unique<LineOperator>(light.elements, light.interior, piece ? for_pieces(coarse) : coarse,
+                                                  mix(seed, coarse_stream, o), progress);
   }
   for (const auto& o : out.originals) out.copies.surfaces.push_back(&o.elements.surface);
   for (const auto& m : out.found.members) {
     out.maps.push_back(m.map);
     out.copies.copies.push_back({m.original, m.map.affine()});
   }
-  split_ground(placed.ground, out);
+  split_ground(placed.partial ? placed.near_ground : placed.ground, out);
+  out.ground_facets = out.copies.ground.size();
+  out.copies.ground.insert(out.copies.ground.end(), placed.far_ground.begin(), placed.far_ground.end());
   out.copies.periodic = scene.periodic;
   return out;
 }
@@ -102,7 +126,7 @@ std::vector<Tangle> tangles(const Members& members, const Surroundings& around) 
     const auto& segments = members.coarse_of(m).segments;
     std::map<std::uint32_t, std::uint32_t> met;
     for (const auto& segment : segments)
-      if (const auto j = around.stands_between(m, segment); j != Surroundings::none) ++met[j];
+      if (const auto j = around.stands_between(m, segment); j != Surroundings::none && j < members.size()) ++met[j];
     for (const auto& [j, n] : met) found[m].push_back({static_cast<double>(n) / static_cast<double>(segments.size()), m, j});
   });
   std::vector<Tangle> out;
@@ -134,7 +158,7 @@ std::vector<std::vector<std::uint32_t>> groups_of(const Members& members, std::v
   };
   for (const auto& t : list) {
     const auto a = find(t.a), b = find(t.b);
-    if (t.share <= tangled_share || a == b) continue;
+    if (t.share <= tangled_share || a == b || members.found.members[t.a].stands_in || members.found.members[t.b].stands_in) continue;
     const auto together = facets[a] + facets[b];
     if (spent + together > most_merged_facets + unique) continue;
     spent += together;
@@ -151,10 +175,17 @@ std::vector<std::vector<std::uint32_t>> groups_of(const Members& members, std::v
 
 }  // namespace
 
-Members make_members(const Scene& scene, const PlacedScene& placed, const OperatorDensity& coarse, double elements_per_organ,
-                     std::uint64_t seed, Progress& progress) {
-  Members members = with_light(scene, placed, find_originals(scene, placed), coarse, elements_per_organ, seed, progress);
-  const auto list = tangles(members, Surroundings(members.copies, members.maps, members.originals));
+Members make_members(const Scene& scene, const PlacedScene& placed, const Classification* classes, const OperatorDensity& coarse,
+                     double elements_per_organ, std::uint64_t seed, Progress& progress) {
+  Approximation approximation;
+  approximation.of_plant.resize(scene.plants.size());
+  if (classes) approximation = approximate(scene, placed, *classes);
+  if (approximation.closed > 0)
+    progress.line(fmt::format("approximate instancing: {} pieces of plants stand for {} structures until these are opened",
+                              approximation.pieces.size(), approximation.closed));
+  auto originals = find_originals(scene, placed, approximation);
+  Members members = with_light(scene, placed, std::move(approximation), std::move(originals), coarse, elements_per_organ, seed, progress);
+  const auto list = tangles(members, Surroundings(members, placed));
   members.tangled = mean_share(members, list);
   const auto groups = groups_of(members, list);
   if (groups.empty()) return members;
@@ -162,10 +193,11 @@ Members make_members(const Scene& scene, const PlacedScene& placed, const Operat
   for (const auto& g : groups) merged_copies += g.size();
   progress.line(fmt::format("{} copies reach into each other and are solved as {}", merged_copies, groups.size()));
   auto found = merged(members.found, groups);
+  approximation = std::move(members.approximation);
   members = {};
-  members = with_light(scene, placed, std::move(found), coarse, elements_per_organ, seed, progress);
+  members = with_light(scene, placed, std::move(approximation), std::move(found), coarse, elements_per_organ, seed, progress);
   members.merged = merged_copies;
-  members.tangled = mean_share(members, tangles(members, Surroundings(members.copies, members.maps, members.originals)));
+  members.tangled = mean_share(members, tangles(members, Surroundings(members, placed)));
   return members;
 }
 

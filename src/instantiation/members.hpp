@@ -16,6 +16,7 @@ namespace sunfleck {
 /// An original as light sees it. The original's frame: p = elements.surface.origin + (coordinates of the surface).
 struct OriginalLight {
   Elements elements;
+  std::vector<std::uint8_t> interior;         ///< interior_of_cells()
   std::vector<std::uint32_t> facet_material;  ///< [n] row of Scene::optics, by facet of the original
   std::vector<std::uint32_t> facet_of_part;   ///< [parts + 1] first facet of each part
   std::unique_ptr<LineOperator> coarse;
@@ -23,15 +24,21 @@ struct OriginalLight {
 
 /// Members and what they share. `copies` points into `originals`.
 struct Members {
+  Approximation approximation;
   Originals found;
   std::vector<OriginalLight> originals;
-  std::vector<Similarity> maps;    ///< per member
-  CopyScene copies;                ///< per member, with the ground
-  std::uint32_t ground_split = 1;  ///< k: every facet of the ground stands in `copies` as k * k parts, one after the other
-  std::uint64_t merged = 0;        ///< copies that were put together with others
-  double tangled = 0;              ///< mean share of lines inside members that meet another one
+  std::vector<Similarity> maps;         ///< per member, those far away included
+  std::vector<std::uint32_t> stand_in;  ///< per member far away: whose light it has
+  CopyScene copies;                     ///< per member, with the ground
+  std::size_t ground_facets = 0;        ///< of `copies.ground` in which light is solved; those beyond are far away
+  std::uint32_t ground_split = 1;       ///< k: every facet of the ground stands in `copies` as k * k parts, one after the other
+  std::uint64_t merged = 0;             ///< copies that were put together with others
+  double tangled = 0;                   ///< mean share of lines inside members that meet another one
 
-  std::size_t size() const { return maps.size(); }
+  /// In which light is solved.
+  std::size_t size() const { return found.solved; }
+  bool is_far(std::size_t member) const { return member >= found.solved; }
+  std::uint64_t original_facets(std::size_t member) const { return found.originals[found.members[member].original].facets; }
   const OriginalLight& original_of(std::size_t member) const { return originals[found.members[member].original]; }
   const LineOperator& coarse_of(std::size_t member) const { return *original_of(member).coarse; }
 };
@@ -39,7 +46,12 @@ struct Members {
 /// Finds originals, traces their coarse operators, and puts copies that reach into each other together: what stands between two leaves
 /// of a copy and is not of it is missing in the original's operator (measured in docs/instantiation.md). Where that would cost more
 /// facets than the scene's originals have and 300,000 besides, the least tangled are left as they are.
-Members make_members(const Scene& scene, const PlacedScene& placed, const OperatorDensity& coarse, double elements_per_organ,
-                     std::uint64_t seed, Progress& progress);
+/// Members that stand in for structures stay apart: what they hide of each other is part of the approximation until they are opened.
+Members make_members(const Scene& scene, const PlacedScene& placed, const Classification* classes, const OperatorDensity& coarse,
+                     double elements_per_organ, std::uint64_t seed, Progress& progress);
+
+/// An original without its operator.
+OriginalLight original_light(const Scene& scene, const Approximation& approximation, const Original& original, double elements_per_organ,
+                             const OperatorDensity& density, std::uint64_t seed, Progress& progress);
 
 }  // namespace sunfleck

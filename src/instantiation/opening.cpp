@@ -1,6 +1,7 @@
 #include "instantiation/opening.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <memory>
@@ -11,6 +12,7 @@
 #include <sunfleck/core/sampling.hpp>
 
 #include "instantiation/batches.hpp"
+#include "instantiation/closed_light.hpp"
 
 namespace sunfleck {
 
@@ -22,24 +24,33 @@ constexpr std::uint64_t fine_stream = 0x1b9e4d6a7c2f5083ULL;
 
 class Opening {
  public:
-  Opening(const SceneLight& s, const Light& total, IrradianceSink& sink, SolveReport& report)
+  Opening(SceneLight& s, const Light& total, IrradianceSink& sink, SolveReport& report)
       : s_(s), total_(total), sink_(sink), report_(report) {}
 
   void open_all() {
     const auto ground_e = s_.ground_irradiance(&total_, true);  // before the fields change no more
-    std::map<std::size_t, Rows> waiting;
-    std::size_t next_row = 0;
     std::uint32_t fine_of = no_parent;
     std::unique_ptr<LineOperator> fine;
-    std::size_t first = 0;
-    while (first < s_.members.maps.size()) {
+    std::vector<std::uint32_t> opened;
+    for (std::uint32_t m = 0; m < s_.members.size(); ++m)
+      if (s_.has_rows(m)) opened.push_back(m);
+    const auto stood_for = copies_stood_for();
+    std::size_t first = 0, next_own = 0;
+    while (first < opened.size() || next_own < stood_for.size()) {
+      // those that others stand in for come in their turn, one by one
+      if (next_own < stood_for.size() && (first == opened.size() || stood_for[next_own] < first_copy(opened[first]))) {
+        s_.progress.fraction("opening", static_cast<double>(next_own) / static_cast<double>(stood_for.size()));
+        open_own(stood_for[next_own++]);
+        continue;
+      }
       std::vector<std::uint32_t> window;
       std::size_t bytes = 0;
-      for (; first < s_.members.maps.size() && (window.empty() || bytes < window_bytes); ++first) {
-        window.push_back(static_cast<std::uint32_t>(first));
-        bytes += s_.members.found.originals[s_.members.found.members[first].original].facets * 2 * sizeof(float) * (s_.columns + s_.states);
+      s_.progress.fraction("opening", static_cast<double>(first) / static_cast<double>(opened.size()));
+      for (; first < opened.size() && (window.empty() || bytes < window_bytes); ++first) {
+        if (next_own < stood_for.size() && stood_for[next_own] < first_copy(opened[first])) break;
+        window.push_back(opened[first]);
+        bytes += s_.members.original_facets(opened[first]) * 2 * sizeof(float) * (s_.columns + s_.states);
       }
-      s_.progress.fraction("opening", static_cast<double>(window.front()) / static_cast<double>(s_.members.maps.size()));
       std::vector<Rows> rows(placed_rows(window));
       auto batches = batches_of(s_, window);
       for (std::size_t begin = 0; begin < batches.size();) {
@@ -48,33 +59,26 @@ class Opening {
         if (fine_of != batches[begin].original) {
           fine.reset();
           fine_of = batches[begin].original;
-          fine = std::make_unique<LineOperator>(s_.members.originals[fine_of].elements, s_.density.fine, mix(s_.seed, fine_stream, fine_of),
-                                                s_.progress);
+          fine = std::make_unique<LineOperator>(s_.members.originals[fine_of].elements, s_.members.originals[fine_of].interior,
+                                                s_.density.fine, mix(s_.seed, fine_stream, fine_of), s_.progress, seen());
           if (fine->bytes() > fine_bytes_) fine_bytes_ = fine->bytes();
         }
         std::vector<std::vector<Balance>> partial(end - begin);
         tbb::parallel_for(begin, end, [&](std::size_t q) {
           if (s_.progress.cancelled()) return;
+          const auto ends = stored_ends(s_, batches[q]);
           with_width(batches[q].width,
-                     [&](auto constant) { open<decltype(constant)::value>(batches[q], *fine, rows, window.front(), partial[q - begin]); });
+                     [&](auto constant) { open<decltype(constant)::value>(batches[q], ends, *fine, rows, partial[q - begin]); });
         });
         s_.progress.check();
         for (std::size_t q = begin; q < end; ++q) add_balance(batches[q], partial[q - begin]);
         begin = end;
       }
-      for (auto& r : rows) {
-        const auto place = r.first;
-        waiting.emplace(place, std::move(r));
-      }
-      while (!waiting.empty() && waiting.begin()->first == next_row) {
-        const Rows& r = waiting.begin()->second;
-        sink_.rows({r.first, r.count, r.irradiance.data(), s_.lights.suns.empty() ? nullptr : r.sunlit.data(), nullptr});
-        next_row += r.count;
-        waiting.erase(waiting.begin());
-      }
+      send(rows);
     }
     report_.memory.emplace_back("fine", fine_bytes_);
     write_ground(ground_e);
+    judge_stand_ins(s_, total_, pieces_, report_);
   }
 
  private:
@@ -84,14 +88,94 @@ class Opening {
     std::vector<float> irradiance, sunlit;
   };
 
+  /// Copies with rows that others stand in for.
+  std::vector<std::uint32_t> copies_stood_for() const {
+    std::vector<std::uint32_t> out;
+    for (std::uint32_t m = 0; m < s_.members.size(); ++m) {
+      const auto& member = s_.members.found.members[m];
+      if (member.stands_in && member.copies.front() < s_.placed.copies.size() && (out.empty() || out.back() != member.copies.front()))
+        out.push_back(member.copies.front());
+    }
+    return out;
+  }
+
+  std::uint32_t first_copy(std::uint32_t m) const { return s_.members.found.members[m].copies.front(); }
+
+  void open_own(std::uint32_t copy) {
+    const std::uint32_t own = s_.begin_own(copy);
+    const LineOperator& op = s_.members.coarse_of(own);
+    fine_bytes_ = std::max(fine_bytes_, op.bytes() + s_.members.original_of(own).elements.bytes());
+    std::vector<RayEnd> ends(op.points.size());
+    const std::size_t pixels = std::size_t{op.pixels()} * op.pixels();
+    tbb::parallel_for(std::size_t{0}, op.fields() / pixels,
+                      [&](std::size_t sense) { s_.look_from(own, op, sense * pixels, (sense + 1) * pixels, ends.data()); });
+    auto rows = placed_rows({own});
+    const auto batches = batches_of(s_, {own});
+    std::vector<std::vector<Balance>> partial(batches.size());
+    tbb::parallel_for(std::size_t{0}, batches.size(), [&](std::size_t q) {
+      with_width(batches[q].width,
+                 [&](auto constant) { open<decltype(constant)::value>(batches[q], {ends.data()}, op, rows, partial[q], true); });
+    });
+    s_.progress.check();
+    for (std::size_t q = 0; q < batches.size(); ++q) add_balance(batches[q], partial[q]);
+    s_.end_own();
+    add_pieces(copy, rows.front());
+    send(rows);
+  }
+
+  /// What each structure of an opened copy absorbed that another had stood in for.
+  void add_pieces(std::uint32_t copy, const Rows& rows) {
+    const std::uint32_t p = s_.placed.plant_of(copy);
+    const auto& entry = s_.scene.plants[p];
+    const auto& piece_of = s_.members.approximation.piece_of[p];
+    OpenedPieces out;
+    out.copy = copy;
+    out.area.assign(s_.members.approximation.of_plant[p].size() + 1, 0.0);
+    out.absorbed.assign(out.area.size() * s_.columns, 0.0);
+    const double scale = std::pow(std::fabs(glm::determinant(s_.placed.map_of(copy).linear)), 2.0 / 3.0);
+    std::size_t i = 0;
+    for (std::size_t shape = 0; shape < entry.plant->shapes.size(); ++shape) {
+      const auto& piece = entry.plant->shapes[shape];
+      const std::size_t k = piece_of[piece.structure];
+      const auto& optics = s_.scene.optics[entry.shape_optics[shape]];
+      for (std::uint32_t t = 0; t < piece.triangle_count; ++t, ++i) {
+        const double area = scale * glm::length(area_vector(shape_triangle(*entry.plant, piece, t)));
+        out.area[k] += area;
+        for (std::size_t c = 0; c < s_.columns; ++c) {
+          const std::size_t state = c / s_.bands, b = c % s_.bands;
+          const float* sides = &rows.irradiance[((state * rows.count + i) * 2) * s_.bands + b];
+          out.absorbed[k * s_.columns + c] += area * ((1.0 - optics.reflectance_front[b] - optics.transmittance[b]) * sides[0] +
+                                                      (1.0 - optics.reflectance_back[b] - optics.transmittance[b]) * sides[s_.bands]);
+        }
+      }
+    }
+    pieces_.push_back(std::move(out));
+  }
+
+  /// Rows wait until those before them have been sent.
+  void send(std::vector<Rows>& rows) {
+    for (auto& r : rows)
+      if (r.count > 0) waiting_.emplace(r.first, std::move(r));
+    while (!waiting_.empty() && waiting_.begin()->first == next_row_) {
+      const Rows& r = waiting_.begin()->second;
+      sink_.rows({r.first, r.count, r.irradiance.data(), s_.lights.suns.empty() ? nullptr : r.sunlit.data(), nullptr});
+      next_row_ += r.count;
+      waiting_.erase(waiting_.begin());
+    }
+  }
+
   /// Space for the rows of the copies of the members, member by member, part by part.
   std::vector<Rows> placed_rows(const std::vector<std::uint32_t>& window) {
     std::vector<Rows> out;
     row_of_member_.clear();
     for (const auto m : window) {
-      row_of_member_.push_back(out.size());
+      row_of_member_.emplace(m, out.size());
       for (const auto c : s_.members.found.members[m].copies) {
         Rows r;
+        if (c >= s_.placed.copies.size()) {  // solved together with one that is opened
+          out.push_back(std::move(r));
+          continue;
+        }
         r.first = s_.placed.copies[c].first_facet;
         r.count = s_.placed.plant_facets[s_.placed.copies[c].plant];
         r.irradiance.assign(s_.states * r.count * 2 * s_.bands, 0.0f);
@@ -102,26 +186,31 @@ class Opening {
     return out;
   }
 
+  /// `coarse_ends`: of the original's operator. If that is the fine one already, they serve twice.
   template <int width>
-  void open(const Batch& b, const LineOperator& fine, std::vector<Rows>& rows, std::uint32_t window_first, std::vector<Balance>& balance) {
+  void open(const Batch& b, const std::vector<const RayEnd*>& coarse_ends, const LineOperator& fine, std::vector<Rows>& rows,
+            std::vector<Balance>& balance, bool same = false) {
     const auto& original = s_.members.originals[b.original];
     const auto& e = original.elements;
     const std::size_t sides = 2 * e.size();
     LaneField<width> field, source(sides, Lanes<width>{}), radiosity;
-    incoming<width>(s_, b, *original.coarse, stored_ends(s_, b), &total_, true, field);
+    incoming<width>(s_, b, *original.coarse, coarse_ends, &total_, true, field);
     add_outside<width>(*original.coarse, field, source);
     add_sun<width>(s_, b, source);
     solve_inside<width>(*original.coarse, e.material, optics_of<width>(s_, b), source, static_cast<float>(s_.density.inner_tolerance),
                         most_sweeps, radiosity);
 
-    std::vector<std::vector<RayEnd>> ends(b.members.size(), std::vector<RayEnd>(fine.points.size()));
-    std::vector<const RayEnd*> pointers;
-    for (std::size_t j = 0; j < b.members.size(); ++j) {
-      s_.look_from(b.members[j], fine, ends[j].data());
-      pointers.push_back(ends[j].data());
+    std::vector<std::vector<RayEnd>> ends;
+    std::vector<const RayEnd*> pointers = coarse_ends;
+    for (std::size_t j = 0; j < b.members.size() && !same; ++j) {
+      ends.emplace_back(fine.points.size());
+      s_.look_from(b.members[j], fine, 0, fine.fields(), ends.back().data());
+      pointers[j] = ends.back().data();
     }
     // the sky's light first, for the balance
-    LaneField<width> sky(sides, Lanes<width>{}), scattered(sides, Lanes<width>{});
+    LaneField<width> sky(sides, Lanes<width>{}), scattered(sides, Lanes<width>{}), cells;
+    if (fine.seen() == LineOperator::Seen::cells) on_cells<width>(b, radiosity, cells);
+    const Lanes<width>* met = cells.empty() ? radiosity.data() : cells.data();
     incoming<width>(s_, b, fine, pointers, nullptr, true, field);
     add_outside<width>(fine, field, sky);
     incoming<width>(s_, b, fine, pointers, &total_, false, field);
@@ -129,19 +218,58 @@ class Opening {
     for (std::size_t i = 0; i < e.size(); ++i) {
       if (fine.lines[i] == 0) continue;
       const float share = 1.0f / static_cast<float>(fine.lines[i]);
-      for (std::size_t side = 2 * i; side < 2 * i + 2; ++side) add_row<width>(fine.inside, side, share, radiosity.data(), scattered[side]);
+      for (std::size_t side = 2 * i; side < 2 * i + 2; ++side) add_row<width>(fine.inside, side, share, met, scattered[side]);
     }
     balance.assign(b.columns, Balance{});
     escaped<width>(b, fine, pointers, radiosity, balance);
     for (std::size_t j = 0; j < b.members.size(); ++j)
-      member_rows<width>(b, j, fine, sky, scattered, rows, row_of_member_[b.members[j] - window_first], balance);
+      member_rows<width>(b, j, fine, sky, scattered, rows, row_of_member_.at(b.members[j]), balance);
+  }
+
+  /// With sun, lines tell lit cells of a leaf from others; without, elements are enough.
+  LineOperator::Seen seen() const { return s_.lights.suns.empty() ? LineOperator::Seen::elements : LineOperator::Seen::cells; }
+
+  /// Radiosity of cells: their element's, but for the sun's light, once reflected, which is the cell's own.
+  template <int width>
+  void on_cells(const Batch& b, const LaneField<width>& radiosity, LaneField<width>& out) const {
+    const auto& e = s_.members.originals[b.original].elements;
+    const auto& s = e.surface;
+    out.resize(2 * s.cells());
+    for (std::size_t cell = 0; cell < s.cells(); ++cell)
+      for (std::size_t side = 0; side < 2; ++side) out[2 * cell + side] = radiosity[2 * std::size_t{e.element_of_cell[cell]} + side];
+    std::vector<float> mean;
+    for (std::size_t j = 0; j < b.members.size(); ++j)
+      for (std::size_t sun = 0; sun < s_.lights.suns.size(); ++sun) {
+        std::vector<std::array<std::size_t, 3>> columns;  // lane, state, band
+        for (std::size_t c = 0; c < b.columns; ++c)
+          if (const auto state = (b.first_column + c) / s_.bands; s_.lights.sun_of_state[state] == sun)
+            columns.push_back({j * b.columns + c, state, (b.first_column + c) % s_.bands});
+        if (columns.empty()) continue;
+        s_.sun_on_elements(b.members[j], sun, mean);
+        const Vec3 d = s_.members.maps[b.members[j]].direction_back(s_.lights.suns[sun]->direction);
+        const std::uint8_t* lit = s_.lit_cells_of(sun, b.members[j]);
+        for (std::size_t t = 0; t < s.size(); ++t) {
+          if (s.split[t] == 0) continue;
+          const auto cosine = static_cast<float>(s.normal[0][t] * d.x + s.normal[1][t] * d.y + s.normal[2][t] * d.z);
+          for (auto cell = s.first_cell[t]; cell < s.first_cell[t + 1]; ++cell) {
+            const auto element = std::size_t{e.element_of_cell[cell]};
+            float more[2] = {-mean[2 * element], -mean[2 * element + 1]};
+            more[cosine > 0 ? 0 : 1] += std::fabs(cosine) * static_cast<float>(lit[cell]) / 255.0f;
+            const auto& optics = s_.scene.optics[e.material[element]];
+            for (const auto& [lane, state, band] : columns) {
+              const auto irradiance = static_cast<float>(s_.scene.states[state].sun->irradiance[band]);
+              out[2 * cell][lane] += irradiance * (optics.reflectance_front[band] * more[0] + optics.transmittance[band] * more[1]);
+              out[2 * cell + 1][lane] += irradiance * (optics.reflectance_back[band] * more[1] + optics.transmittance[band] * more[0]);
+            }
+          }
+        }
+      }
   }
 
   /// Radiosity that ends in the sky: sum of area * B * (lines of the side that do) / W.
   template <int width>
   void escaped(const Batch& b, const LineOperator& op, const std::vector<const RayEnd*>& ends, const LaneField<width>& radiosity,
                std::vector<Balance>& balance) const {
-    const auto& e = s_.members.originals[b.original].elements;
     std::vector<float> open(op.fields());
     for (std::size_t j = 0; j < b.members.size(); ++j) {
       for (std::size_t f = 0; f < op.fields(); ++f) {
@@ -156,7 +284,7 @@ class Opening {
         for (auto k = op.outside.start[side]; k < op.outside.start[side + 1]; ++k)
           lines += static_cast<float>(op.outside.count[k]) * open[op.outside.column[k]];
         if (lines == 0) continue;
-        const double area = scale * e.area[side / 2] * lines / op.lines[side / 2];
+        const double area = scale * op.open_area[side / 2] * lines / op.lines[side / 2];
         for (std::size_t c = 0; c < b.columns; ++c) balance[c].escaped += area * radiosity[side][j * b.columns + c];
       }
     }
@@ -176,6 +304,7 @@ class Opening {
       const auto part = static_cast<std::size_t>(std::upper_bound(original.facet_of_part.begin(), original.facet_of_part.end(), facet) -
                                                  original.facet_of_part.begin() - 1);
       Rows& out = rows[first_row + part];
+      if (out.count == 0) continue;
       const std::size_t i = facet - original.facet_of_part[part];
       const std::uint32_t begin = s.first_cell[t], end = s.first_cell[t + 1];
       const float share = 1.0f / static_cast<float>(end - begin);
@@ -190,15 +319,14 @@ class Opening {
           float direct = 0, rest = 0, lit = 0;
           for (auto cell = begin; cell < end; ++cell) {
             const std::size_t from = 2 * std::size_t{fine.stand_in[e.element_of_cell[cell]]} + side;
-            direct += share * sky[from][lane];
-            rest += share * scattered[from][lane];
+            direct += share * fine.open(cell) * sky[from][lane];
+            rest += share * fine.open(cell) * scattered[from][lane];
           }
           if (sun != LightSources::none) {
             const Vec3 d = s_.members.maps[m].direction_back(s_.lights.suns[sun]->direction);
             const double cosine = s.normal[0][t] * d.x + s.normal[1][t] * d.y + s.normal[2][t] * d.z;
             if ((cosine > 0) == (side == 0)) {
-              for (auto cell = begin; cell < end; ++cell)
-                lit += share * static_cast<float>(s_.lit[sun].lit[s_.lit[sun].first[m] + cell]) / 255.0f;
+              for (auto cell = begin; cell < end; ++cell) lit += share * static_cast<float>(s_.lit_cells_of(sun, m)[cell]) / 255.0f;
               direct += lit * static_cast<float>(std::fabs(cosine)) * sun_strength;
             }
             if (band == 0) out.sunlit[(state * out.count + i) * 2 + side] = lit;
@@ -252,17 +380,20 @@ class Opening {
     sink_.rows({s_.placed.first_ground_facet, n, irradiance.data(), s_.lights.suns.empty() ? nullptr : sunlit.data(), nullptr});
   }
 
-  const SceneLight& s_;
+  SceneLight& s_;
   const Light& total_;
   IrradianceSink& sink_;
   SolveReport& report_;
-  std::vector<std::size_t> row_of_member_;  ///< of the window
+  std::map<std::uint32_t, std::size_t> row_of_member_;  ///< of the window
+  std::map<std::size_t, Rows> waiting_;
+  std::vector<OpenedPieces> pieces_;
+  std::size_t next_row_ = 0;
   std::size_t fine_bytes_ = 0;
 };
 
 }  // namespace
 
-void open_copies(const SceneLight& s, const Light& light, IrradianceSink& sink, SolveReport& report) {
+void open_copies(SceneLight& s, const Light& light, IrradianceSink& sink, SolveReport& report) {
   Opening(s, light, sink, report).open_all();
 }
 

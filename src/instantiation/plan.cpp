@@ -51,10 +51,10 @@ InstantiationDensity adapted(InstantiationDensity density, std::uint64_t facets)
 InstantiationPlan plan_instantiation(const Scene& scene, const PlacedScene& placed, const InstantiationSettings& settings,
                                      Progress& progress) {
   check_instantiable(scene);
-  const auto density = adapted(settings.density, placed.facets);
+  const auto density = adapted(settings.density, placed.solved_facets());
   OperatorDensity pilot = density.coarse;
   pilot.directions = 16;
-  const auto members = make_members(scene, placed, pilot, density.elements_per_organ, settings.seed, progress);
+  const auto members = make_members(scene, placed, settings.classes, pilot, density.elements_per_organ, settings.seed, progress);
   InstantiationPlan plan;
   plan.originals = members.originals.size();
   plan.copies = members.size();
@@ -73,7 +73,7 @@ InstantiationPlan plan_instantiation(const Scene& scene, const PlacedScene& plac
   for (const auto& o : members.originals) {
     OperatorDensity half = pilot;
     half.directions /= 2;
-    const LineOperator few(o.elements, half, settings.seed, progress);
+    const LineOperator few(o.elements, o.interior, half, settings.seed, progress);
     double coarse_links = 0, fine_links = 0;
     shared += static_cast<double>(o.elements.bytes()) + bytes_of_operator(few, *o.coarse, density.coarse, coarse_links);
     fine = std::max(fine, bytes_of_operator(few, *o.coarse, density.fine, fine_links));
@@ -88,9 +88,9 @@ InstantiationPlan plan_instantiation(const Scene& scene, const PlacedScene& plac
   const double fields = 2.0 * density.coarse.directions * pixels * static_cast<double>(members.size());
   plan.memory.emplace_back("originals", static_cast<std::uint64_t>(shared));
   if (!lights.suns.empty()) plan.memory.emplace_back("sun", lights.suns.size() * cells + 4 * cells);
-  const Surroundings around(members.copies, members.maps, members.originals);
+  const Surroundings around(members, placed);
   plan.memory.emplace_back("rays", around.bytes() + static_cast<std::uint64_t>(fields * density.coarse.points * sizeof(RayEnd)) +
-                                       2 * placed.ground.size() * density.ground_rays * sizeof(RayEnd));
+                                       2 * (placed.ground.size() + placed.near_ground.size()) * density.ground_rays * sizeof(RayEnd));
   plan.memory.emplace_back("fields", static_cast<std::uint64_t>(6 * 4 * fields * static_cast<double>(columns)));
   plan.memory.emplace_back("fine", static_cast<std::uint64_t>(fine));
   return plan;

@@ -15,33 +15,35 @@ namespace sunfleck {
 
 namespace {
 
-constexpr std::uint64_t sun_stream = 0x5a6c3e1f9b7d2048ULL, ground_stream = 0x2e8b7a4d1c6f3095ULL;
+constexpr std::uint64_t sun_stream = 0x5a6c3e1f9b7d2048ULL, own_stream = 0x3c8f6a1d5e9b7240ULL, ground_stream = 0x2e8b7a4d1c6f3095ULL;
 
 }  // namespace
 
 SceneLight::SceneLight(const Scene& a_scene, const PlacedScene& a_placed, const InstantiationSettings& settings, Progress& a_progress)
     : scene(a_scene),
       placed(a_placed),
-      density(adapted(settings.density, a_placed.facets)),
+      density(adapted(settings.density, a_placed.solved_facets())),
       seed(settings.seed),
       progress(a_progress),
       states(a_scene.states.size()),
       bands(a_scene.band_count()),
       columns(states * bands),
       lights(light_sources(a_scene.states)),
-      members(make_members(a_scene, a_placed, density.coarse, density.elements_per_organ, seed, a_progress)) {}
+      members(make_members(a_scene, a_placed, settings.classes, density.coarse, density.elements_per_organ, seed, a_progress)) {}
 
 void SceneLight::project_sun(SolveReport& report) {
-  double pitch = 0;
-  for (std::size_t m = 0; m < members.maps.size(); ++m) {
+  double& pitch = sun_pitch;
+  for (std::size_t m = 0; m < members.size(); ++m) {
     const double organ = members.original_of(m).elements.organ_area * members.maps[m].scale * members.maps[m].scale;
     const double own = std::sqrt(0.5 * organ / (density.sun_lines_per_organ / density.sun_samples));
     pitch = pitch == 0 ? own : std::min(pitch, own);
   }
   std::uint64_t fragments = 0;
+  CopyScene solved = members.copies;  // what is far shades nothing that is opened
+  solved.copies.resize(members.size());
   for (const auto* sun : lights.suns) {
-    lit.push_back(lit_cells(members.copies, sun_directions(*sun, density.sun_samples, mix(seed, sun_stream)), pitch,
-                            mix(seed, sun_stream, 1), progress));
+    lit.push_back(
+        lit_cells(solved, sun_directions(*sun, density.sun_samples, mix(seed, sun_stream)), pitch, mix(seed, sun_stream, 1), progress));
     fragments += lit.back().fragments;
     report.memory.emplace_back("sun", bytes_of(lit.back().lit));
   }
@@ -49,7 +51,7 @@ void SceneLight::project_sun(SolveReport& report) {
 }
 
 void SceneLight::look_around(SolveReport& report) {
-  around = std::make_unique<Surroundings>(members.copies, members.maps, members.originals);
+  around = std::make_unique<Surroundings>(members, placed);
   const std::size_t n = members.size();
   field_start.assign(n + 1, 0);
   end_start.assign(n + 1, 0);
@@ -61,19 +63,61 @@ void SceneLight::look_around(SolveReport& report) {
   ends.resize(end_start.back());
   tbb::parallel_for(std::size_t{0}, n, [&](std::size_t m) {
     if (progress.cancelled()) return;
-    look_from(static_cast<std::uint32_t>(m), members.coarse_of(m), ends.data() + end_start[m]);
+    const auto& op = members.coarse_of(m);
+    look_from(static_cast<std::uint32_t>(m), op, 0, op.fields(), ends.data() + end_start[m]);
   });
   progress.check();
-  ground = view_from_ground(scene, members.copies.ground, *around, lights,
+  const std::vector<Triangle> solved_ground(members.copies.ground.begin(),
+                                            members.copies.ground.begin() + static_cast<std::ptrdiff_t>(members.ground_facets));
+  ground = view_from_ground(scene, solved_ground, *around, lights,
                             std::max(8u, density.ground_rays / (members.ground_split * members.ground_split)), density.sun_samples,
                             mix(seed, ground_stream), progress);
   report.counts.emplace_back("rays", ends.size() + ground.ends.size());
   report.memory.emplace_back("rays", around->bytes() + bytes_of(ends) + ground.bytes());
 }
 
-void SceneLight::look_from(std::uint32_t m, const LineOperator& op, RayEnd* out) const {
+std::uint32_t SceneLight::begin_own(std::uint32_t copy) {
+  const std::uint32_t plant = placed.plant_of(copy);
+  for (std::uint32_t m = 0; m < members.size(); ++m)
+    if (members.found.members[m].stands_in && members.found.members[m].copies.front() == copy) gone.push_back(m);
+  around->set_hidden(gone, true);
+  own_member = static_cast<std::uint32_t>(members.found.members.size());
+  members.found.originals.push_back({{{plant, Affine{}}}, placed.plant_facets[plant]});
+  Member member;
+  member.original = static_cast<std::uint32_t>(members.originals.size());
+  member.map = *similarity_of(placed.map_of(copy));
+  member.copies = {copy};
+  members.found.members.push_back(member);
+  members.maps.push_back(member.map);
+  members.originals.push_back(original_light(scene, members.approximation, members.found.originals.back(), density.elements_per_organ,
+                                             density.coarse, seed, progress));
+  auto& light = members.originals.back();
+  light.coarse = std::make_unique<LineOperator>(light.elements, light.interior, density.fine, mix(seed, own_stream, copy), progress);
+  CopyScene shade = members.copies;
+  shade.surfaces.push_back(&light.elements.surface);
+  shade.copies.resize(members.size());
+  for (auto at = gone.rbegin(); at != gone.rend(); ++at) shade.copies.erase(shade.copies.begin() + *at);
+  shade.copies.push_back({static_cast<std::uint32_t>(shade.surfaces.size() - 1), member.map.affine()});
+  for (const auto* sun : lights.suns)
+    own_lit.push_back(lit_cells(shade, sun_directions(*sun, density.sun_samples, mix(seed, sun_stream)), sun_pitch,
+                                mix(seed, sun_stream, 1), progress, static_cast<std::uint32_t>(shade.copies.size() - 1)));
+  return own_member;
+}
+
+void SceneLight::end_own() {
+  around->set_hidden(gone, false);
+  gone.clear();
+  own_lit.clear();
+  members.originals.pop_back();
+  members.maps.pop_back();
+  members.found.members.pop_back();
+  members.found.originals.pop_back();
+  own_member = 0xffffffffu;
+}
+
+void SceneLight::look_from(std::uint32_t m, const LineOperator& op, std::size_t first_field, std::size_t last_field, RayEnd* out) const {
   const std::size_t pixels = std::size_t{op.pixels()} * op.pixels();
-  for (std::size_t f = 0; f < op.fields(); ++f) {
+  for (std::size_t f = first_field; f < last_field; ++f) {
     const Vec3 d = members.maps[m].direction(op.direction(f / pixels));
     for (auto k = op.point_start[f]; k < op.point_start[f + 1]; ++k) out[k] = around->look(m, op.points[k], d);
   }
@@ -90,7 +134,7 @@ void SceneLight::sun_on_elements(std::uint32_t m, std::size_t sun, std::vector<f
   const auto& e = members.original_of(m).elements;
   const auto& s = e.surface;
   const Vec3 d = members.maps[m].direction_back(lights.suns[sun]->direction);
-  const std::uint8_t* cell_lit = lit[sun].lit.data() + lit[sun].first[m];
+  const std::uint8_t* cell_lit = lit_cells_of(sun, m);
   out.assign(2 * e.size(), 0.0f);
   for (std::size_t t = 0; t < s.size(); ++t) {
     if (s.split[t] == 0) continue;
@@ -99,8 +143,9 @@ void SceneLight::sun_on_elements(std::uint32_t m, std::size_t sun, std::vector<f
     for (auto c = s.first_cell[t]; c < s.first_cell[t + 1]; ++c)
       out[2 * e.element_of_cell[c] + (cosine > 0 ? 0 : 1)] += weight * static_cast<float>(cell_lit[c]);
   }
+  const auto& open_area = members.coarse_of(m).open_area;  // what is enclosed is in the dark
   for (std::size_t i = 0; i < out.size(); ++i)
-    if (e.area[i / 2] > 0) out[i] /= e.area[i / 2];
+    if (e.area[i / 2] > 0) out[i] /= std::max(open_area[i / 2], 0.05f * e.area[i / 2]);
 }
 
 std::vector<float> SceneLight::ground_irradiance(const Light* light, bool direct) const {
@@ -151,7 +196,7 @@ void SceneLight::reflect_from_ground(std::vector<float>& e) const {
 
 std::vector<double> SceneLight::product(const Light& a, const Light& b) const {
   std::vector<double> out(columns, 0.0);
-  for (std::size_t m = 0; m < members.maps.size(); ++m) {
+  for (std::size_t m = 0; m < members.size(); ++m) {
     const auto& op = members.coarse_of(m);
     const double unit = members.maps[m].scale * members.maps[m].scale * op.line_area / op.directions();
     const float *x = a.fields.data() + field_start[m] * columns, *y = b.fields.data() + field_start[m] * columns;
@@ -168,8 +213,14 @@ Light SceneLight::no_light() const {
   return {std::vector<float>(field_start.back() * columns, 0.0f), std::vector<float>(ground.seen.size() * columns, 0.0f)};
 }
 
+bool SceneLight::has_rows(std::uint32_t m) const {
+  if (members.found.members[m].stands_in) return false;
+  const auto& copies = members.found.members[m].copies;
+  return std::any_of(copies.begin(), copies.end(), [&](std::uint32_t c) { return c < placed.copies.size(); });
+}
+
 std::vector<std::uint32_t> SceneLight::all_members() const {
-  std::vector<std::uint32_t> out(members.maps.size());
+  std::vector<std::uint32_t> out(members.size());
   for (std::uint32_t m = 0; m < out.size(); ++m) out[m] = m;
   return out;
 }

@@ -29,8 +29,8 @@ struct SceneLight {
   /// Rays from all copies and from the ground.
   void look_around(SolveReport& report);
 
-  /// Rays through the points of an operator of member `m`.
-  void look_from(std::uint32_t m, const LineOperator& op, RayEnd* out) const;
+  /// Rays through the points of fields of an operator of member `m`; `out` is that of its first point.
+  void look_from(std::uint32_t m, const LineOperator& op, std::size_t first_field, std::size_t last_field, RayEnd* out) const;
   /// Radiance times pi of the sky towards d, for a column [W m^-2].
   float sky_radiance(const Vec3& d, std::size_t column) const;
   /// Per element side: cosine towards the sun times the lit fraction, area mean over its cells.
@@ -44,6 +44,16 @@ struct SceneLight {
   std::vector<double> product(const Light& a, const Light& b) const;
   Light no_light() const;
   std::vector<std::uint32_t> all_members() const;
+  /// Opens a copy that others stand in for: it becomes a member of an original of its own with the fine operator, those that stood in for
+  /// it are gone, and the sun is projected onto it. Returns its number, which is good until end_own().
+  std::uint32_t begin_own(std::uint32_t copy);
+  void end_own();
+  /// Cells of a member that a sun reaches, in 1/255.
+  const std::uint8_t* lit_cells_of(std::size_t sun, std::uint32_t m) const {
+    return m == own_member ? own_lit[sun].lit.data() : lit[sun].lit.data() + lit[sun].first[m];
+  }
+  /// Is any copy of the member opened?
+  bool has_rows(std::uint32_t m) const;
 
   const Scene& scene;
   const PlacedScene& placed;
@@ -58,6 +68,12 @@ struct SceneLight {
   std::vector<std::uint64_t> field_start, end_start;  ///< [members + 1]
   std::vector<RayEnd> ends;                           ///< of the coarse operators' points
   GroundView ground;
+  double sun_pitch = 0;  ///< of the sun's lines [m]
+
+ private:
+  std::uint32_t own_member = 0xffffffffu;  ///< the member that begin_own() has made
+  std::vector<LitCells> own_lit;           ///< per distinct sun
+  std::vector<std::uint32_t> gone;
 };
 
 }  // namespace sunfleck

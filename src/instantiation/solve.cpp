@@ -10,6 +10,7 @@
 #include <sunfleck/core/memory.hpp>
 
 #include "instantiation/batches.hpp"
+#include "instantiation/closed_light.hpp"
 #include "instantiation/opening.hpp"
 #include "instantiation/outer_iteration.hpp"
 #include "instantiation/scene_light.hpp"
@@ -33,8 +34,11 @@ std::uint64_t report_originals(const SceneLight& s, SolveReport& report) {
   report.counts.emplace_back("elements", elements);
   report.counts.emplace_back("links", links);
   report.memory.emplace_back("originals", bytes);
-  s.progress.line(fmt::format("{} originals for {} copies, {} elements, {} links", s.members.originals.size(),
-                              s.members.found.members.size(), elements, links));
+  s.progress.line(
+      fmt::format("{} originals for {} copies, {} elements, {} links", s.members.originals.size(), s.members.size(), elements, links));
+  if (!s.placed.closed.empty())
+    s.progress.line(fmt::format("{} copies are opened, {} near them stay closed, {} farther away are seen", s.placed.copies.size(),
+                                s.placed.near.size(), s.placed.far.size()));
   return links;
 }
 
@@ -129,6 +133,8 @@ SolveReport solve_instantiation(const Scene& scene, const PlacedScene& placed, c
 
   open_copies(s, iterated.light, sink, report);
   timed("opening");
+  absorb_closed(s, iterated.light, report);
+  if (!placed.closed.empty()) timed("closed structures");
   return report;
 }
 

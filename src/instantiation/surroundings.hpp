@@ -26,7 +26,8 @@ struct RayEnd {
 /// Rays through a scene of members.
 class Surroundings {
  public:
-  Surroundings(const CopyScene& scene, const std::vector<Similarity>& maps, const std::vector<OriginalLight>& originals);
+  /// Both must outlive it.
+  Surroundings(const Members& members, const PlacedScene& placed);
 
   /// From a point of member `m`, given in its original's surface coordinates, along the world direction `d`.
   RayEnd look(std::uint32_t m, const std::array<float, 3>& point, const Vec3& d) const;
@@ -38,14 +39,19 @@ class Surroundings {
   RayEnd look_from_ground(const Vec3& point, const Vec3& d) const;
   /// Is the sun hidden from a world point?
   bool hidden(const Vec3& point, const Vec3& d) const;
+  /// Rays no longer meet some members, or meet them again. Not while rays are asked.
+  void set_hidden(const std::vector<std::uint32_t>& members, bool hidden) { rays_.set_hidden(members, hidden); }
   std::size_t bytes() const { return rays_.bytes(); }
 
  private:
   RayEnd end_of(const CopyHit& hit, const Vec3& d) const;
 
+  std::uint32_t near_facet(const Vec3& point) const;
+
+  const Members& members_;
   const CopyScene& scene_;
   const std::vector<Similarity>& maps_;
-  const std::vector<OriginalLight>& originals_;
+  const PlacedScene& placed_;
   CopyRays rays_;
   double skip_ = 0;  ///< [m] rays begin so far from where they start
 };

@@ -36,11 +36,6 @@ struct DirectionLines {
   std::vector<OutsideArea> outside;
 };
 
-/// Sides of organs that face the inside of a hollow body (stems are open tubes): at least 85 % of their lines end on the same side of
-/// the same organ (30 % at least) or within a leaf's length, while the other side sees farther. Judged from 16 directions. [2 * organ +
-/// side]
-std::vector<bool> interior_sides(const Elements& elements, double pitch, std::uint64_t seed, Progress& progress);
-
 class LineCollector {
  public:
   /// `interior` from interior_sides(), or empty: nothing is enclosed.

@@ -11,6 +11,7 @@
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
 
+#include <sunfleck/radiosity/interior.hpp>
 #include <sunfleck/core/memory.hpp>
 #include <sunfleck/core/release_memory.hpp>
 #include <sunfleck/core/sampling.hpp>

@@ -110,7 +110,7 @@ SolveReport trace(const Scene& scene, const Facets& facets, const ReferenceSetti
 
   Stopwatch building;
   const RayScene rays(facets);
-  const std::size_t n = rays.facet_count();
+  const std::size_t n = settings.facets > 0 ? std::min<std::size_t>(settings.facets, rays.facet_count()) : rays.facet_count();
   check_lamplight_ends(scene, rays);
   const PathSampler sampler(scene, rays, settings.seed);
   add_seconds(report.timings, "build the tree of rays", building.seconds());
@@ -138,8 +138,11 @@ SolveReport trace(const Scene& scene, const Facets& facets, const ReferenceSetti
   Stopwatch balancing;
   const std::size_t work = std::size_t{n} * samples;  // as many particles as a sixteenth of the paths, within bounds
   PathSampler::Escape escape;
-  arena.execute(
-      [&] { escape = sampler.escape_share(static_cast<std::uint32_t>(std::clamp<std::size_t>(work / (16 * states), 64, 4096))); });
+  if (settings.facets > 0)
+    escape.share.assign(states * bands, 0.0);
+  else
+    arena.execute(
+        [&] { escape = sampler.escape_share(static_cast<std::uint32_t>(std::clamp<std::size_t>(work / (16 * states), 64, 4096))); });
   for (std::size_t s = 0; s < states; ++s)
     for (std::size_t b = 0; b < bands; ++b) report.balance[s][b].escaped = report.balance[s][b].incident * escape.share[s * bands + b];
   add_seconds(report.timings, "balance", balancing.seconds());

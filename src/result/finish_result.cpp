@@ -73,6 +73,10 @@ void write_pairs(OutputFile& file, ArrayWriter& arrays, hid_t group, const std::
 void write_report(OutputFile& file, ArrayWriter& arrays, const SolveReport& report, const Certificate* certificate, std::size_t states,
                   std::size_t bands, const HeightProfile& profile) {
   write_attribute(file, file.id(), "status", report.status == SolveStatus::converged ? "converged" : "not_converged");
+  if (!report.stand_in_rmse.empty()) {
+    write_attribute(file, file.id(), "stand_in_rmse", report.stand_in_rmse);
+    write_attribute(file, file.id(), "stand_in_bias", report.stand_in_bias);
+  }
   write_balance(file, arrays, report, states, bands, profile);
 
   std::vector<std::uint32_t> level, iteration;
@@ -102,6 +106,35 @@ void write_report(OutputFile& file, ArrayWriter& arrays, const SolveReport& repo
   write_pairs(file, arrays, memory.get(), report.memory, "bytes", "byte");
   write_attribute(file, memory.get(), "peak_resident_bytes", peak_resident_bytes());
   if (certificate) write_certificate(file, arrays, *certificate, states, bands);
+}
+
+void write_structures(OutputFile& file, ArrayWriter& arrays, const SolveReport& report, const Scene& scene, const PlacedScene& placed) {
+  if (placed.closed.empty()) return;
+  const std::size_t n = placed.closed.size(), states = scene.states.size(), bands = scene.band_count();
+  std::vector<std::string> path, type;
+  std::vector<double> map, absorbed(states * n * bands, 0.0);
+  std::vector<std::uint8_t> solved;
+  for (std::size_t k = 0; k < n; ++k) {
+    const auto& c = placed.closed[k];
+    path.push_back(c.path);
+    const Plant* plant = c.is_group ? nullptr : scene.plants[c.index].plant.get();
+    type.push_back(plant ? plant->types[plant->structures[c.structure].type] : scene.groups[c.index].name);
+    for (int row = 0; row < 3; ++row) {
+      for (int column = 0; column < 3; ++column) map.push_back(c.map.linear[column][row]);
+      map.push_back(c.map.translation[row]);
+    }
+    solved.push_back(c.solved);
+    for (std::size_t s = 0; s < states; ++s)
+      for (std::size_t b = 0; b < bands && !report.structures.empty(); ++b)
+        absorbed[(s * n + k) * bands + b] = report.structures.at((k * states + s) * bands + b);
+  }
+  const Id group = make_group(file, file.id(), "structures");
+  arrays.write_strings(group.get(), "placement", path);
+  arrays.write_strings(group.get(), "type", type);
+  arrays.write(group.get(), "map", map.data(), {n, 3, 4}, "m");
+  arrays.write(group.get(), "solved", solved, "1");
+  arrays.write_states(group.get(), "absorbed", absorbed.data(), {states, n, bands}, "W");
+  arrays.flush();
 }
 
 }  // namespace sunfleck::h5

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <sunfleck/result/certificate.hpp>
+#include <sunfleck/scene/placed_scene.hpp>
 #include <sunfleck/scene/solution.hpp>
 
 #include "result/height_profile.hpp"
@@ -12,5 +13,8 @@ namespace sunfleck::h5 {
 /// /balance, /convergence, /counts, /certificate, /timings, /memory and the status.
 void write_report(OutputFile& file, ArrayWriter& arrays, const SolveReport& report, const Certificate* certificate, std::size_t states,
                   std::size_t bands, const HeightProfile& profile);
+
+/// /structures: what PlacedScene::closed absorbs. Nothing if there is none.
+void write_structures(OutputFile& file, ArrayWriter& arrays, const SolveReport& report, const Scene& scene, const PlacedScene& placed);
 
 }  // namespace sunfleck::h5

@@ -116,6 +116,7 @@ class ResultWriter::Impl {
     organs_->close();
 
     h5::ArrayWriter arrays(file_, queue_);
+    h5::write_structures(file_, arrays, report, rows_.scene(), rows_.placed());
     h5::write_report(file_, arrays, report, certificate, states_, bands_, profile_);
     h5::write_sensors(file_, arrays, rows_.scene(), report.sensors);
     facets_group_.close();

@@ -56,6 +56,13 @@ std::vector<std::uint64_t> placed_copies(const Scene& scene) {
   return copies;
 }
 
+std::vector<std::uint64_t> copies_inside(const Scene& scene, bool is_group, std::uint32_t index) {
+  if (is_group) return GroupContents(scene).of(index);
+  std::vector<std::uint64_t> copies(scene.plants.size(), 0);
+  copies[index] = 1;
+  return copies;
+}
+
 SceneCounts count(const Scene& scene) {
   SceneCounts counts;
   counts.copies = placed_copies(scene);

@@ -1,10 +1,16 @@
 #include <sunfleck/scene/placed_scene.hpp>
 
+#include <algorithm>
 #include <new>
+#include <stdexcept>
 #include <unordered_map>
+
+#include <fmt/format.h>
 
 #include <sunfleck/core/error.hpp>
 #include <sunfleck/scene/counts.hpp>
+
+#include "scene/neighbourhood.hpp"
 
 namespace sunfleck {
 
@@ -16,11 +22,13 @@ std::string label(const std::string& name, std::size_t i) {
 
 class Placing {
  public:
-  Placing(const Scene& scene, PlacedScene& out) : scene_(scene), out_(out) {}
+  Placing(const Scene& scene, PlacedScene& out)
+      : scene_(scene), out_(out), only_(scene.solve.only, location(scene.file, 0, "solve.only")) {}
 
   void run() {
     out_.plant_facets.assign(scene_.plants.size(), 0);
     out_.plant_organs.assign(scene_.plants.size(), 0);
+    out_.partial = !only_.empty();
     const auto copies = placed_copies(scene_);
     std::uint64_t all = 0;
     for (std::size_t p = 0; p < copies.size(); ++p) {
@@ -28,26 +36,99 @@ class Placing {
       if (copies[p] > 0) count_plant(p);
     }
     try {
-      out_.copies.reserve(all);
-      out_.paths.reserve(all);
-    } catch (const std::exception&) {
-      throw InputError(location(scene_.file), std::to_string(all) + " copies of plants, for which there is not enough memory",
-                       "fewer copies");
+      if (!out_.partial) {
+        out_.copies.reserve(all);
+        out_.paths.reserve(all);
+      }
+      const Match match = out_.partial ? Match::inside : Match::complete;
+      for (std::uint32_t p = 0; p < scene_.plants.size(); ++p) {
+        const auto& entry = scene_.plants[p];
+        for (std::size_t i = 0; i < entry.placements.size(); ++i) {
+          path_ = {label(entry.name, i)};
+          visit(false, p, entry.placements[i].map, match);
+        }
+      }
+      for (std::uint32_t g = 0; g < scene_.groups.size(); ++g) {
+        const auto& group = scene_.groups[g];
+        for (std::size_t i = 0; i < group.placements.size(); ++i) {
+          path_ = {label(group.name, i)};
+          visit(true, g, group.placements[i].map, match);
+        }
+      }
+    } catch (const std::bad_alloc&) {
+      throw_too_many(all);
+    } catch (const std::length_error&) {
+      throw_too_many(all);
     }
-    for (std::uint32_t p = 0; p < scene_.plants.size(); ++p) {
-      const auto& entry = scene_.plants[p];
-      for (std::size_t i = 0; i < entry.placements.size(); ++i) add_plant(p, entry.placements[i].map, label(entry.name, i));
-    }
-    for (const auto& group : scene_.groups)
-      for (std::size_t i = 0; i < group.placements.size(); ++i) add_group(group, group.placements[i].map, label(group.name, i));
+    if (const auto unmet = only_.unmet(); !unmet.empty())
+      throw InputError(
+          location(scene_.file, 0, "solve.only"), fmt::format("\"{}\", which no placement has", unmet),
+          fmt::format("a path of placements as results name them{}", first_path_.empty() ? "" : ", such as \"" + first_path_ + '"'));
     out_.first_ground_facet = out_.facets;
     out_.first_ground_organ = out_.organs;
-    if (scene_.ground) add_ground(*scene_.ground);
+    if (!scene_.ground) return;
+    if (out_.partial) return;
+    add_ground(*scene_.ground);
     out_.facets += out_.ground.size();
     out_.organs += out_.ground_names.size();
   }
 
  private:
+  using Match = PathPatterns::Match;
+
+  [[noreturn]] void throw_too_many(std::uint64_t all) const {
+    throw InputError(location(scene_.file), std::to_string(all) + " copies of plants, for which there is not enough memory",
+                     "fewer copies, or `only` in [solve] for some of them");
+  }
+
+  std::string path() const {
+    std::string text;
+    for (const auto& segment : path_) text += (text.empty() ? "" : "/") + segment;
+    return text;
+  }
+
+  /// A plant or group at path_; `above` is what the patterns say of what holds it.
+  void visit(bool is_group, std::uint32_t index, const Affine& map, Match above) {
+    if (first_path_.empty()) first_path_ = path();
+    Match match = above;
+    if (match != Match::complete) match = only_.match(path_);
+    if (match == Match::inside && !is_group) match = Match::none;
+    if (match == Match::none || (match == Match::complete && stops_at(is_group, index))) {
+      out_.closed.push_back({path(), is_group, index, 0, map, match == Match::complete});
+      return;
+    }
+    if (!is_group) return add_plant(index, map, path());
+    std::unordered_map<std::string, std::size_t> count;
+    const auto& group = scene_.groups[index];
+    for (const auto& member : group.members) {
+      const std::string& name = member.is_group ? scene_.groups[member.index].name : scene_.plants[member.index].name;
+      path_.push_back(label(name, count[name]++));
+      visit(member.is_group, member.index, map * member.placement.map, match);
+      path_.pop_back();
+    }
+  }
+
+  /// Does `stop_at` name this plant or group as a whole?
+  bool stops_at(bool is_group, std::uint32_t index) {
+    const auto& stop = scene_.solve.stop_at;
+    if (stop.empty()) return false;
+    if (is_group) return stop.type == scene_.groups[index].name;
+    if (!stop.type.empty()) return stop.type == "plant" || stop.type == scene_.plants[index].name;
+    const Plant& plant = *scene_.plants[index].plant;
+    if (stop.leaf_count) {
+      std::uint64_t leaves = 0;
+      for (const auto& s : plant.structures) leaves += is_leaf(plant, s);
+      return leaves <= *stop.leaf_count;
+    }
+    const Vec3 size = plant.bounds().size();
+    return std::max({size.x, size.y, size.z}) <= *stop.size;
+  }
+
+  static bool is_leaf(const Plant& plant, const Structure& s) {
+    const std::string& type = plant.types[s.type];
+    return type == "leaf" || type == "Leaf" || type == "LEAF";
+  }
+
   void count_plant(std::size_t p) {
     const Plant& plant = *scene_.plants[p].plant;
     std::vector<bool> organ(plant.structures.size(), false);
@@ -65,18 +146,6 @@ class Placing {
     out_.organs += out_.plant_organs[index];
   }
 
-  void add_group(const GroupEntry& group, const Affine& map, const std::string& path) {
-    std::unordered_map<std::string, std::size_t> count;
-    for (const auto& member : group.members) {
-      const std::string& name = member.is_group ? scene_.groups[member.index].name : scene_.plants[member.index].name;
-      const std::string inner = path + "/" + label(name, count[name]++);
-      if (member.is_group)
-        add_group(scene_.groups[member.index], map * member.placement.map, inner);
-      else
-        add_plant(member.index, map * member.placement.map, inner);
-    }
-  }
-
   void add_ground(const Ground& ground) {
     if (ground.mesh) {
       out_.ground_names.push_back("ground");
@@ -84,23 +153,20 @@ class Placing {
       out_.ground_organ.assign(out_.ground.size(), 0);
       return;
     }
-    const auto columns = ground.cells[0], rows = ground.cells[1];  // Clang 14 does not capture structured bindings
     const double x0 = ground.centre[0] - 0.5 * ground.size[0], y0 = ground.centre[1] - 0.5 * ground.size[1];
-    const auto at = [&](std::uint32_t i, std::uint32_t j) {
-      return Vec3{x0 + ground.size[0] * i / columns, y0 + ground.size[1] * j / rows, ground.height};
-    };
-    for (std::uint32_t j = 0; j < rows; ++j)
-      for (std::uint32_t i = 0; i < columns; ++i) {
-        const auto organ = static_cast<std::uint32_t>(out_.ground_names.size());
+    out_.ground = ground_cells({x0, y0, x0 + ground.size[0], y0 + ground.size[1]}, ground.cells, ground.height);
+    for (std::uint32_t j = 0; j < ground.cells[1]; ++j)
+      for (std::uint32_t i = 0; i < ground.cells[0]; ++i) {
+        out_.ground_organ.insert(out_.ground_organ.end(), 2, static_cast<std::uint32_t>(out_.ground_names.size()));
         out_.ground_names.push_back("cell_" + std::to_string(i) + "_" + std::to_string(j));
-        out_.ground.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
-        out_.ground.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
-        out_.ground_organ.insert(out_.ground_organ.end(), 2, organ);
       }
   }
 
   const Scene& scene_;
   PlacedScene& out_;
+  PathPatterns only_;
+  std::vector<std::string> path_;
+  std::string first_path_;
 };
 
 }  // namespace
@@ -134,10 +200,26 @@ std::string organ_name(const Plant& plant, std::uint32_t structure) {
   return s.name.empty() ? plant.types[s.type] + "_" + std::to_string(structure) : s.name;
 }
 
+std::vector<Triangle> ground_cells(const std::array<double, 4>& field, const std::array<std::uint32_t, 2>& cells, double height) {
+  const auto columns = cells[0], rows = cells[1];  // Clang 14 does not capture structured bindings
+  const double width = field[2] - field[0], depth = field[3] - field[1];
+  const auto at = [&](std::uint32_t i, std::uint32_t j) {
+    return Vec3{field[0] + width * i / columns, field[1] + depth * j / rows, height};
+  };
+  std::vector<Triangle> out;
+  for (std::uint32_t j = 0; j < rows; ++j)
+    for (std::uint32_t i = 0; i < columns; ++i) {
+      out.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
+      out.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
+    }
+  return out;
+}
+
 PlacedScene place(const Scene& scene) {
   PlacedScene out;
   Placing(scene, out).run();
-  if (out.facets == 0 && scene.sensors.empty())
+  if (!out.closed.empty()) add_neighbourhood(scene, out);
+  if (out.facets == 0 && out.near.empty() && scene.sensors.empty())
     throw InputError(location(scene.file), "no facet", "at least one plant placed in the world, or a ground");
   return out;
 }

@@ -168,6 +168,21 @@ CopyHit CopyRays::first_hit(const Vec3& origin, const Vec3& direction, double sk
   return impl_->trace(origin, direction, skip, range);
 }
 
+void CopyRays::set_hidden(const std::vector<std::uint32_t>& copies, bool hidden) {
+  std::vector<bool> meant(impl_->scene.copies.size(), false);
+  for (const auto c : copies) meant[c] = true;
+  for (std::size_t i = 0; i < impl_->instance_copy.size(); ++i) {
+    if (!meant[impl_->instance_copy[i]]) continue;
+    const auto geometry = rtcGetGeometry(impl_->top.get(), static_cast<unsigned>(i));
+    if (hidden)
+      rtcDisableGeometry(geometry);
+    else
+      rtcEnableGeometry(geometry);
+  }
+  rtcCommitScene(impl_->top.get());
+  impl_->device.check("copies");
+}
+
 bool CopyRays::occluded(const Vec3& origin, const Vec3& direction, double skip, double range) const {
   return impl_->trace(origin, direction, skip, range).kind != CopyHit::Kind::nothing;
 }

@@ -63,10 +63,11 @@ void add_saturated(std::uint16_t& counter, std::uint32_t n) {
 
 class LitCellsCounter {
  public:
-  LitCellsCounter(const CopyScene& scene, LitCells& out) : scene_(scene), out_(out) {
+  LitCellsCounter(const CopyScene& scene, std::optional<std::uint32_t> only, LitCells& out) : scene_(scene), only_(only), out_(out) {
     for (const auto* s : scene.surfaces) chunks_.push_back(chunks_of(*s));
     out_.first.push_back(0);
-    for (const auto& copy : scene.copies) out_.first.push_back(out_.first.back() + scene.surfaces[copy.surface]->cells());
+    for (std::uint32_t c = 0; c < scene.copies.size(); ++c)
+      out_.first.push_back(out_.first.back() + (counts(c) ? scene.surfaces[scene.copies[c].surface]->cells() : 0));
     all_.assign(out_.first.back(), 0);
     visible_.assign(out_.first.back(), 0);
   }
@@ -87,6 +88,8 @@ class LitCellsCounter {
   }
 
  private:
+  bool counts(std::uint32_t copy) const { return !only_ || copy == *only_; }
+
   /// Frame of the plane, every image of every copy on it, and which of them reach into which tile.
   void lay_out(const Vec3& d, double pitch, double turn, double shift_x, double shift_y) {
     Projection plane;
@@ -142,6 +145,9 @@ class LitCellsCounter {
       for (int y = y0; y <= y1; ++y)
         for (int x = x0; x <= x1; ++x) bins_[static_cast<std::size_t>(y) * tiles_x_ + x].push_back(k);
     }
+    if (only_)
+      for (auto& bin : bins_)
+        if (std::none_of(bin.begin(), bin.end(), [&](std::uint32_t k) { return counts(placed_[k].copy); })) bin.clear();
   }
 
   Placed place(const Projection& plane, std::uint32_t i) const {
@@ -206,6 +212,7 @@ class LitCellsCounter {
       const auto offset = static_cast<float>(placed.depth0 - reference);
       const double scale_x = glm::length(p.x_row), scale_y = glm::length(p.y_row);
       const std::uint64_t first_cell = out_.first[placed.copy];
+      const bool counted = counts(placed.copy);
       first_code.push_back(static_cast<std::uint32_t>(base));
       const auto draw = [&](std::size_t begin, std::size_t end) {
         rasterise(s, p, nullptr, begin, end, 0, rows,
@@ -214,7 +221,7 @@ class LitCellsCounter {
                     draw_span(triangle, static_cast<std::uint32_t>(base) + s.first_cell[triangle.index], triangle.front_up ? 1u : 0u, 1.0f,
                               offset, count, dx, dy, 0.0f, buffer.depth.data() + first, buffer.code.data() + first,
                               [&](std::uint32_t cell, int fragments) {
-                                add_saturated(all_[first_cell + (cell - base)], static_cast<std::uint32_t>(fragments));
+                                if (counted) add_saturated(all_[first_cell + (cell - base)], static_cast<std::uint32_t>(fragments));
                               });
                   });
       };
@@ -241,14 +248,15 @@ class LitCellsCounter {
         if (code != nothing) {
           const auto image =
               static_cast<std::size_t>(std::upper_bound(first_code.begin(), first_code.end(), code >> 1) - first_code.begin()) - 1;
-          add_saturated(visible_[out_.first[placed_[bins_[t][image]].copy] + ((code >> 1) - first_code[image])],
-                        static_cast<std::uint32_t>(end - column));
+          if (const auto copy = placed_[bins_[t][image]].copy; counts(copy))
+            add_saturated(visible_[out_.first[copy] + ((code >> 1) - first_code[image])], static_cast<std::uint32_t>(end - column));
         }
         column = end;
       }
   }
 
   const CopyScene& scene_;
+  std::optional<std::uint32_t> only_;
   LitCells& out_;
   std::vector<std::vector<Chunk>> chunks_;
   std::vector<std::uint16_t> all_, visible_;
@@ -260,9 +268,10 @@ class LitCellsCounter {
 
 }  // namespace
 
-LitCells lit_cells(const CopyScene& scene, const std::vector<Vec3>& directions, double pitch, std::uint64_t seed, Progress& progress) {
+LitCells lit_cells(const CopyScene& scene, const std::vector<Vec3>& directions, double pitch, std::uint64_t seed, Progress& progress,
+                   std::optional<std::uint32_t> only) {
   LitCells out;
-  LitCellsCounter counter(scene, out);
+  LitCellsCounter counter(scene, only, out);
   for (std::size_t i = 0; i < directions.size(); ++i) {
     progress.check();
     progress.fraction("sun", static_cast<double>(i) / static_cast<double>(directions.size()));

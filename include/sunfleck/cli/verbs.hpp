@@ -19,6 +19,8 @@ struct SolveOptions {
   std::optional<std::uint64_t> seed;
   std::optional<std::uint32_t> samples;  ///< reference method, per facet
   int threads = 0;
+  std::vector<std::string> only;       ///< placements that are opened, as [solve] only
+  std::optional<std::string> stop_at;  ///< as [solve] stop_at: TYPE, size=METRES or leaf_count=N
   bool certificate = true;
   std::optional<std::uint32_t> certificate_organs;  ///< organs that are path-traced
   std::optional<std::uint64_t> certificate_rays;    ///< rays to spend on them, about

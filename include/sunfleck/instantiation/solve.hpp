@@ -2,6 +2,7 @@
 #pragma once
 
 #include <sunfleck/core/progress.hpp>
+#include <sunfleck/policy/classes.hpp>
 #include <sunfleck/scene/placed_scene.hpp>
 #include <sunfleck/scene/solution.hpp>
 
@@ -28,6 +29,8 @@ struct InstantiationDensity {
 InstantiationDensity instantiation_density(Quality quality);
 
 struct InstantiationSettings : SolveSettings {
+  /// Which structures stand in for others until these are opened, for plants that name a policy and are placed once; null = none.
+  const Classification* classes = nullptr;
   InstantiationDensity density = instantiation_density(Quality::standard);
 };
 

@@ -14,6 +14,8 @@ namespace sunfleck {
 struct ReferenceSettings : SolveSettings {
   /// Per facet, each one point with a path from its front and one from its back; rounded up to a multiple of the 16 randomisations.
   std::uint32_t samples = 256;
+  /// The first so many facets are traced, the others only met by rays; there is no balance then. 0 = all.
+  std::uint64_t facets = 0;
 };
 
 /// Independent randomisations from which variances come.

@@ -14,6 +14,9 @@ inline constexpr std::uint64_t too_many_copies = std::uint64_t{1} << 32;
 /// Per row of Scene::plants: placed copies, through groups of any depth, at most too_many_copies. No cycle among groups.
 std::vector<std::uint64_t> placed_copies(const Scene& scene);
 
+/// Per row of Scene::plants: copies that a plant or group holds, at most too_many_copies.
+std::vector<std::uint64_t> copies_inside(const Scene& scene, bool is_group, std::uint32_t index);
+
 struct SceneCounts {
   std::vector<std::uint64_t> copies;  ///< per row of Scene::plants: placed copies, through groups of any depth
   std::uint64_t plant_facets = 0;     ///< of all copies

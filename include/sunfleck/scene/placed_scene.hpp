@@ -1,6 +1,7 @@
 // Which copies a scene holds and which rows of the result are theirs, without writing them out.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -41,6 +42,23 @@ struct PlacedCopy {
   std::uint64_t first_organ = 0;  ///< row of the result
 };
 
+/// A placement that is not opened, with all that stands in it: a plant, a group, or a structure within a plant.
+struct ClosedStructure {
+  std::string path;
+  bool is_group = false;
+  std::uint32_t index = 0;      ///< row of Scene::plants or Scene::groups
+  std::uint32_t structure = 0;  ///< row of Plant::structures
+  Affine map;                   ///< frame of the plant or group -> world
+  bool solved = true;           ///< false if some of its copies are too far from what is opened: others like them stand for their light
+};
+
+/// A copy of a plant that is not opened.
+struct ClosedCopy {
+  std::uint32_t plant = 0;
+  Affine map;
+  std::uint32_t structure = 0;  ///< row of PlacedScene::closed
+};
+
 /// Rows of facets and organs in the order of the result file: plants in scene order (placements in their order), groups in scene order
 /// with their placements, members in theirs; then ground cells. Memory: some 120 bytes a copy and what `ground` holds.
 struct PlacedScene {
@@ -53,9 +71,39 @@ struct PlacedScene {
   std::vector<std::string> ground_names;    ///< per organ of the ground
   std::uint64_t first_ground_facet = 0, first_ground_organ = 0;
   std::uint64_t facets = 0, organs = 0;  ///< in all
+
+  // What Scene::solve leaves closed (`only`, `stop_at` at whole plants and groups): no rows. The ground has rows unless `only` is given.
+  std::vector<ClosedStructure> closed;
+  std::vector<ClosedCopy> near;        ///< copies in which light is solved: named by `stop_at`, or near what is opened or in its sun
+  std::vector<ClosedCopy> far;         ///< copies that rays meet; light that leaves them is that of copies alike that are solved
+  std::vector<Triangle> near_ground;   ///< with `only`: the ground about what is opened, world [m]
+  std::vector<Triangle> far_ground;    ///< the rest of it, as far as rays matter
+  std::array<double, 4> near_field{};  ///< x_low, y_low, x_high, y_high of near_ground, which stands for far_ground tile by tile [m]
+  std::array<std::uint32_t, 2> near_cells{1, 1};  ///< two triangles each, as ground_cells are laid
+  bool partial = false;                           ///< `only` is given
+
+  /// Copies in which light is solved: those with rows, then `near`; `far` follows them.
+  std::size_t solved() const { return copies.size() + near.size(); }
+  std::uint64_t solved_facets() const {
+    std::uint64_t n = facets;
+    for (const auto& c : near) n += plant_facets[c.plant];
+    return n;
+  }
+  std::size_t all_copies() const { return solved() + far.size(); }
+  std::uint32_t plant_of(std::size_t copy) const { return copy < copies.size() ? copies[copy].plant : closed_copy(copy).plant; }
+  const Affine& map_of(std::size_t copy) const { return copy < copies.size() ? copies[copy].map : closed_copy(copy).map; }
+  /// For copies beyond those with rows.
+  const ClosedCopy& closed_copy(std::size_t copy) const { return copy < solved() ? near[copy - copies.size()] : far[copy - solved()]; }
 };
 
-/// Lays out a scene that has passed check_scene(). Throws InputError if it has no facet or more copies than memory holds.
+/// Lays out a scene that has passed check_scene(): what Scene::solve says is opened has rows; of the rest, copies near what is opened are
+/// listed, and groups farther away are never entered, so that 10^8 copies cost nothing. Copies count as near within two plant sizes, or
+/// if they stand between what is opened and a sun; farther ones are listed as far as 50 plant heights, at most 50,000. Scenes of at most
+/// 2 million facets and periodic ones are near as a whole. Throws InputError if there is no facet, more copies than memory holds, or a
+/// pattern of `only` that meets nothing.
 PlacedScene place(const Scene& scene);
+
+/// The same scene with rows for what is near and far as well, after those of what is opened, and, with `only`, for the ground about it.
+PlacedScene with_surroundings(const PlacedScene& placed);
 
 }  // namespace sunfleck

@@ -12,6 +12,7 @@
 #include <sunfleck/light/state.hpp>
 #include <sunfleck/plant/optics.hpp>
 #include <sunfleck/plant/plant.hpp>
+#include <sunfleck/scene/depth.hpp>
 #include <sunfleck/scene/lamp.hpp>
 #include <sunfleck/scene/placement.hpp>
 #include <sunfleck/scene/sensor.hpp>
@@ -75,6 +76,8 @@ struct SolveChoice {
   std::optional<std::uint64_t> seed;
   std::optional<bool> certificate;
   std::optional<std::uint32_t> samples;  ///< reference method: per facet
+  std::vector<std::string> only;         ///< placements that are opened (PathPatterns); empty = all
+  StopAt stop_at;                        ///< structures at which opening ends; empty = facets
 };
 
 struct Scene {

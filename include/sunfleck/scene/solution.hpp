@@ -66,6 +66,10 @@ struct SolveReport {
   /// [b] largest eigenvalue of F R that the iteration has met: how much of the scattered light one more scattering keeps. From below;
   /// empty where nothing was iterated.
   std::vector<double> spectral_radius;
+  /// [b] where structures stood in for others: what the closed ones absorb against what they did once opened, per area, over all of them:
+  /// root mean square and mean of the difference over the mean. The approximation's own error, apart from the solver's.
+  std::vector<double> stand_in_rmse, stand_in_bias;
+  std::vector<double> structures;                             ///< [k][s][b] absorbed by PlacedScene::closed [W]
   std::vector<std::pair<std::string, std::uint64_t>> counts;  ///< deterministic work: "links", "fragments", "directions", "rays"
   std::vector<std::pair<std::string, std::uint64_t>> memory;  ///< bytes held per phase, counted by the program
   Timings timings;

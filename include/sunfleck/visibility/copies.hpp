@@ -50,6 +50,8 @@ class CopyRays {
   CopyHit first_hit(const Vec3& origin, const Vec3& direction, double skip, double range = std::numeric_limits<double>::infinity()) const;
   /// Is there anything within `range` [m]?
   bool occluded(const Vec3& origin, const Vec3& direction, double skip, double range) const;
+  /// Rays no longer meet these copies, or meet them again. Not while rays are asked.
+  void set_hidden(const std::vector<std::uint32_t>& copies, bool hidden);
   std::size_t bytes() const;
 
  private:
@@ -66,6 +68,8 @@ struct LitCells {
 
 /// Projects all copies along each of `directions` (points of the sun's disc) in tiles of 256 x 256 lines about `pitch` apart [m], each
 /// tile with those copies that reach into it. Only the depth buffer of a tile and two counts a cell are held.
-LitCells lit_cells(const CopyScene& scene, const std::vector<Vec3>& directions, double pitch, std::uint64_t seed, Progress& progress);
+/// `only`: cells of that copy alone are counted, in tiles that it reaches into; the others shade it.
+LitCells lit_cells(const CopyScene& scene, const std::vector<Vec3>& directions, double pitch, std::uint64_t seed, Progress& progress,
+                   std::optional<std::uint32_t> only = std::nullopt);
 
 }  // namespace sunfleck

@@ -1,0 +1,234 @@
+#include "instantiation/closed_light.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <sunfleck/scene/counts.hpp>
+
+#include "instantiation/batches.hpp"
+
+namespace sunfleck {
+
+namespace {
+
+constexpr std::uint32_t most_sweeps = 200;
+
+class ClosedLight {
+ public:
+  ClosedLight(const SceneLight& s, const Light& total)
+      : s_(s), total_(total), absorbed_(s.placed.solved() * s.columns, 0.0), direct_(absorbed_), escaped_(absorbed_) {}
+
+  void run(SolveReport& report) {
+    bool any_far = false;
+    for (const auto& c : s_.placed.closed) any_far = any_far || !c.solved;
+    std::vector<std::uint32_t> wanted;
+    for (std::uint32_t m = 0; m < s_.members.size(); ++m)
+      if (any_far || !all_opened(m)) wanted.push_back(m);
+    const auto batches = batches_of(s_, wanted);
+    tbb::parallel_for(std::size_t{0}, batches.size(), [&](std::size_t q) {
+      if (s_.progress.cancelled()) return;
+      with_width(batches[q].width, [&](auto constant) { absorb<decltype(constant)::value>(batches[q]); });
+    });
+    s_.progress.check();
+    add_structures(report);
+    if (!s_.placed.partial) add_balance(report);
+  }
+
+  /// Absorbed by each of some members [member][columns] W.
+  std::vector<double> by_member(const std::vector<std::uint32_t>& wanted) {
+    by_member_.assign(s_.members.size() * s_.columns, 0.0);
+    const auto batches = batches_of(s_, wanted);
+    tbb::parallel_for(std::size_t{0}, batches.size(), [&](std::size_t q) {
+      with_width(batches[q].width, [&](auto constant) { absorb<decltype(constant)::value>(batches[q]); });
+    });
+    return std::move(by_member_);
+  }
+
+ private:
+  bool all_opened(std::uint32_t m) const {
+    const auto& copies = s_.members.found.members[m].copies;
+    return std::all_of(copies.begin(), copies.end(), [&](std::uint32_t c) { return c < s_.placed.copies.size(); });
+  }
+
+  template <int width>
+  void absorb(const Batch& b) {
+    const auto& original = s_.members.originals[b.original];
+    const LineOperator& op = *original.coarse;
+    const auto& e = original.elements;
+    const auto ends = stored_ends(s_, b);
+    LaneField<width> field, direct(2 * e.size(), Lanes<width>{}), source, radiosity;
+    incoming<width>(s_, b, op, ends, nullptr, true, field);
+    add_outside<width>(op, field, direct);
+    add_sun<width>(s_, b, direct);
+    source = direct;
+    incoming<width>(s_, b, op, ends, &total_, false, field);
+    add_outside<width>(op, field, source);
+    solve_inside<width>(op, e.material, optics_of<width>(s_, b), source, static_cast<float>(s_.density.inner_tolerance), most_sweeps,
+                        radiosity);
+    for (std::size_t i = 0; i < e.size(); ++i) {
+      if (op.lines[i] == 0) continue;
+      const float share = 1.0f / static_cast<float>(op.lines[i]);
+      for (std::size_t side = 2 * i; side < 2 * i + 2; ++side) add_row<width>(op.inside, side, share, radiosity.data(), source[side]);
+    }
+    for (std::size_t j = 0; j < b.members.size(); ++j) {
+      add_facets<width>(b, j, direct, source);
+      if (by_member_.empty()) add_escaped<width>(b, j, ends[j], radiosity);
+    }
+  }
+
+  template <int width>
+  void add_facets(const Batch& b, std::size_t j, const LaneField<width>& direct, const LaneField<width>& all) {
+    const std::uint32_t m = b.members[j];
+    const auto& original = s_.members.originals[b.original];
+    const auto& e = original.elements;
+    const auto& s = e.surface;
+    const double scale = s_.members.maps[m].scale * s_.members.maps[m].scale;
+    for (std::size_t t = 0; t < s.size(); ++t) {
+      if (s.split[t] == 0) continue;
+      const std::uint32_t facet = e.order[t];
+      const auto part =
+          std::upper_bound(original.facet_of_part.begin(), original.facet_of_part.end(), facet) - original.facet_of_part.begin() - 1;
+      const std::uint32_t copy = s_.members.found.members[m].copies[static_cast<std::size_t>(part)];
+      const auto& optics = s_.scene.optics[original.facet_material[facet]];
+      for (std::size_t c = 0; c < b.columns; ++c) {
+        const std::size_t column = b.first_column + c, band = column % s_.bands, lane = j * b.columns + c;
+        const double absorptance[2] = {1.0 - optics.reflectance_front[band] - optics.transmittance[band],
+                                       1.0 - optics.reflectance_back[band] - optics.transmittance[band]};
+        double absorbed = 0, first = 0;
+        for (auto cell = s.first_cell[t]; cell < s.first_cell[t + 1]; ++cell)
+          for (std::size_t side = 0; side < 2; ++side) {
+            const double open = original.coarse->open(cell);
+            const std::size_t from = 2 * std::size_t{original.coarse->stand_in[e.element_of_cell[cell]]} + side;
+            absorbed += std::max(0.0, absorptance[side]) * open * all[from][lane];
+            first += open * direct[from][lane];
+          }
+        if (!by_member_.empty()) {
+          by_member_[m * s_.columns + column] += scale * s.cell_area[t] * absorbed;
+          continue;
+        }
+        absorbed_[copy * s_.columns + column] += scale * s.cell_area[t] * absorbed;
+        direct_[copy * s_.columns + column] += scale * s.cell_area[t] * first;
+      }
+    }
+  }
+
+  /// Light that leaves for the sky; of a member of several copies it counts with the first.
+  template <int width>
+  void add_escaped(const Batch& b, std::size_t j, const RayEnd* ends, const LaneField<width>& radiosity) {
+    const auto& original = s_.members.originals[b.original];
+    const LineOperator& op = *original.coarse;
+    const std::uint32_t m = b.members[j];
+    const double scale = s_.members.maps[m].scale * s_.members.maps[m].scale;
+    std::vector<float> open(op.fields());
+    for (std::size_t f = 0; f < op.fields(); ++f) {
+      std::uint32_t n = 0;
+      for (auto k = op.point_start[f]; k < op.point_start[f + 1]; ++k) n += ends[k].is_sky();
+      open[f] = n ? static_cast<float>(n) / static_cast<float>(op.point_start[f + 1] - op.point_start[f]) : 0.0f;
+    }
+    double* out = &escaped_[s_.members.found.members[m].copies.front() * s_.columns + b.first_column];
+    for (std::size_t side = 0; side < radiosity.size(); ++side) {
+      if (op.lines[side / 2] == 0) continue;
+      double lines = 0;
+      for (auto k = op.outside.start[side]; k < op.outside.start[side + 1]; ++k)
+        lines += double{static_cast<float>(op.outside.count[k])} * open[op.outside.column[k]];
+      const double area = scale * op.open_area[side / 2] * lines / op.lines[side / 2];
+      for (std::size_t c = 0; c < b.columns; ++c) out[c] += area * radiosity[side][j * b.columns + c];
+    }
+  }
+
+  void add_structures(SolveReport& report) const {
+    const auto& placed = s_.placed;
+    report.structures.assign(placed.closed.size() * s_.columns, 0.0);
+    std::vector<std::vector<std::uint64_t>> solved(placed.closed.size());  // copies per plant, where some are not
+    for (std::size_t k = 0; k < placed.closed.size(); ++k)
+      if (!placed.closed[k].solved) solved[k].assign(s_.scene.plants.size(), 0);
+    for (std::size_t n = 0; n < placed.near.size(); ++n) {
+      const auto row = placed.near[n].structure;
+      if (!placed.closed[row].solved) ++solved[row][placed.near[n].plant];
+      for (std::size_t c = 0; c < s_.columns; ++c)
+        report.structures[row * s_.columns + c] += absorbed_[(placed.copies.size() + n) * s_.columns + c];
+    }
+    std::vector<double> sum(s_.scene.plants.size() * s_.columns, 0.0);
+    std::vector<std::uint64_t> copies(s_.scene.plants.size(), 0);
+    for (std::size_t i = 0; i < placed.solved(); ++i) {
+      const auto plant = placed.plant_of(i);
+      ++copies[plant];
+      for (std::size_t c = 0; c < s_.columns; ++c) sum[plant * s_.columns + c] += absorbed_[i * s_.columns + c];
+    }
+    std::map<std::pair<bool, std::uint32_t>, std::vector<std::uint64_t>> known;
+    for (std::size_t k = 0; k < placed.closed.size(); ++k) {
+      const auto& closed = placed.closed[k];
+      if (closed.solved) continue;
+      auto& inside = known[{closed.is_group, closed.index}];
+      if (inside.empty()) inside = copies_inside(s_.scene, closed.is_group, closed.index);
+      for (std::size_t p = 0; p < inside.size(); ++p) {
+        if (inside[p] <= solved[k][p] || copies[p] == 0) continue;
+        const double share = static_cast<double>(inside[p] - solved[k][p]) / static_cast<double>(copies[p]);
+        for (std::size_t c = 0; c < s_.columns; ++c) report.structures[k * s_.columns + c] += share * sum[p * s_.columns + c];
+      }
+    }
+  }
+
+  void add_balance(SolveReport& report) const {
+    for (std::size_t i = s_.placed.copies.size(); i < s_.placed.solved(); ++i)
+      for (std::size_t c = 0; c < s_.columns; ++c) {
+        auto& out = report.balance[c / s_.bands][c % s_.bands];
+        out.incident += direct_[i * s_.columns + c];
+        out.leaves += absorbed_[i * s_.columns + c];
+        out.escaped += escaped_[i * s_.columns + c];
+      }
+  }
+
+  const SceneLight& s_;
+  const Light& total_;
+  std::vector<double> absorbed_, direct_, escaped_;  ///< [solved copies][columns] W
+  std::vector<double> by_member_;                    ///< if asked for: [members][columns]
+};
+
+}  // namespace
+
+void judge_stand_ins(const SceneLight& s, const Light& light, const std::vector<OpenedPieces>& opened, SolveReport& report) {
+  if (opened.empty()) return;
+  std::vector<std::uint32_t> wanted;
+  for (std::uint32_t m = 0; m < s.members.size(); ++m)
+    if (s.members.found.members[m].stands_in) wanted.push_back(m);
+  const auto closed = ClosedLight(s, light).by_member(wanted);
+  std::vector<double> weight(s.bands, 0.0), mean(s.bands, 0.0), square(s.bands, 0.0), difference(s.bands, 0.0);
+  for (const auto& copy : opened) {
+    const auto& pieces = s.members.approximation.of_plant[s.placed.plant_of(copy.copy)];
+    std::size_t piece = 0;
+    for (const auto m : wanted) {
+      if (s.members.found.members[m].copies.front() != copy.copy) continue;
+      const std::size_t k = piece++;  // members of a copy stand in the order of its pieces
+      if (pieces[k].rest || !(copy.area[k] > 0)) continue;
+      for (std::size_t c = 0; c < s.columns; ++c) {
+        const double own = copy.absorbed[k * s.columns + c] / copy.area[k], stood = closed[m * s.columns + c] / copy.area[k];
+        const std::size_t b = c % s.bands;
+        weight[b] += copy.area[k];
+        mean[b] += copy.area[k] * own;
+        difference[b] += copy.area[k] * (stood - own);
+        square[b] += copy.area[k] * (stood - own) * (stood - own);
+      }
+    }
+  }
+  for (std::size_t b = 0; b < s.bands; ++b) {
+    const double level = mean[b] > 0 ? mean[b] / weight[b] : 1.0;
+    report.stand_in_rmse.push_back(weight[b] > 0 ? std::sqrt(square[b] / weight[b]) / level : 0.0);
+    report.stand_in_bias.push_back(weight[b] > 0 ? difference[b] / weight[b] / level : 0.0);
+    s.progress.line(
+        fmt::format("approximation, {}: closed structures absorbed {:+.2f} % on average and {:.2f} % rms other than opened ones",
+                    s.scene.bands[b], 100 * report.stand_in_bias[b], 100 * report.stand_in_rmse[b]));
+  }
+}
+
+void absorb_closed(const SceneLight& s, const Light& light, SolveReport& report) {
+  if (s.placed.closed.empty()) return;
+  ClosedLight(s, light).run(report);
+}
+
+}  // namespace sunfleck
