@@ -11,44 +11,13 @@
 #include <sunfleck/reference/path_sampler.hpp>
 #include <sunfleck/reference/path_tracer.hpp>
 #include <sunfleck/scene/build.hpp>
+#include <sunfleck/scene/kept_light.hpp>
 
 namespace reference_runs {
 
 using namespace sunfleck;
 
-class Kept : public IrradianceSink {
- public:
-  Kept(std::size_t states, std::size_t facets, std::size_t bands) : states_(states), n_(facets), bands_(bands) {
-    irradiance.resize(states * facets * 2 * bands);
-    sunlit.resize(states * facets * 2);
-    variance.resize(states * facets * bands);
-  }
-  void rows(const IrradianceRows& r) override {
-    in_order = in_order && r.first_facet == next_;
-    next_ = r.first_facet + r.count;
-    const auto copy = [&](std::vector<float>& to, const float* from, std::size_t width) {
-      if (!from) return;
-      for (std::size_t s = 0; s < states_; ++s)
-        for (std::size_t k = 0; k < r.count * width; ++k) to[(s * n_ + r.first_facet) * width + k] = from[s * r.count * width + k];
-    };
-    copy(irradiance, r.irradiance, 2 * bands_);
-    copy(sunlit, r.sunlit, 2);
-    copy(variance, r.variance_of_absorbed, bands_);
-  }
-  bool complete() const { return in_order && next_ == n_; }
-  double on(std::size_t facet, int side, std::size_t band = 0, std::size_t state = 0) const {
-    return irradiance[((state * n_ + facet) * 2 + static_cast<std::size_t>(side)) * bands_ + band];
-  }
-  double variance_of(std::size_t facet, std::size_t band = 0, std::size_t state = 0) const {
-    return variance[(state * n_ + facet) * bands_ + band];
-  }
-
-  std::vector<float> irradiance, sunlit, variance;
-  bool in_order = true;
-
- private:
-  std::size_t states_, n_, bands_, next_ = 0;
-};
+using Kept = KeptLight;
 
 struct Run {
   FacetScene facets;

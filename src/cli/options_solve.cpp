@@ -38,6 +38,10 @@ void define_solve(CLI::App& verb, SolveOptions& o) {
                   "organs that the check path-traces (default 240): more of them narrow its interval")
       ->type_name("N")
       ->check(count_from(2, 1e6));
+  verb.add_option("--picture", o.picture,
+                  "also draw the scene in natural colour from the light as it is found, whatever the result keeps; 'render' has the other "
+                  "choices")
+      ->type_name("IMAGE.png");
   verb.add_option("--only", o.only,
                   "open only these placements, such as 'tile[3]/*' or 'coffee 17', in place of the scene's own [solve] only: what "
                   "stands about them lights and shades them, what is farther away is not even listed (methods instantiation and reference)")

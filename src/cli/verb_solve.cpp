@@ -20,6 +20,7 @@
 #include <sunfleck/result/result_writer.hpp>
 #include <sunfleck/result/structure_sums.hpp>
 #include <sunfleck/scene/facets.hpp>
+#include <sunfleck/view/picture_sink.hpp>
 
 #include "cli/error_goal.hpp"
 #include "cli/method_choice.hpp"
@@ -210,6 +211,7 @@ void say_not_reached(const Scene& scene, const Refinement& refinement, const Cer
 int verb_solve(const SolveOptions& options, Progress& progress) {
   const Stopwatch total;
   check_output_path(options.result, {".h5", ".hdf5"}, {options.scene});
+  if (options.picture) check_output_path(*options.picture, {".png"}, {options.scene, options.result});
   std::optional<tbb::global_control> limit;
   if (options.threads > 0) limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(options.threads));
 
@@ -256,6 +258,7 @@ int verb_solve(const SolveOptions& options, Progress& progress) {
   SolveReport report;
   std::optional<TracedOrgans> traced;  // once: all solves are judged by the same
   std::optional<Certificate> certificate;
+  std::optional<Image> image;
   double earlier_seconds = 0.0, certificate_seconds = 0.0;
   for (bool again = true; again;) {
     writer.emplace(options.result, scene, sums ? layout : placed, scene.output, software_version(), choice.method);
@@ -264,10 +267,14 @@ int verb_solve(const SolveOptions& options, Progress& progress) {
     if (!organs.empty()) writer->keep_totals(std::move(organs));
     std::optional<StructureSums> structures;
     if (sums) structures.emplace(scene, placed, layout, *writer);
-    report = run_method(choice, scene, placed, facets, options, seed, structures ? static_cast<IrradianceSink&>(*structures) : *writer,
-                        progress);
+    IrradianceSink& rows_sink = structures ? static_cast<IrradianceSink&>(*structures) : *writer;
+    std::optional<PictureSink> picture;
+    if (options.picture) picture.emplace(scene, placed, 0, PictureSettings{}, &rows_sink, progress);
+    IrradianceSink& sink = picture ? *picture : rows_sink;
+    report = run_method(choice, scene, placed, facets, options, seed, sink, progress);
     if (structures) structures->append(report.structures);
     again = false;
+    if (picture) image = picture->draw(progress).image;
     if (chosen.empty()) {
       if (refinement) progress.line("note: no organ of a plant has an area: there is no error to judge");
       break;
@@ -298,6 +305,10 @@ int verb_solve(const SolveOptions& options, Progress& progress) {
   print_solve_table(scene, report, certificate ? &*certificate : nullptr);
   say_timings(report, placed.facets, total.seconds(), progress);
   progress.line("wrote " + options.result);
+  if (image) {
+    write_png(*image, *options.picture);
+    progress.line("wrote " + *options.picture);
+  }
   if (report.status == SolveStatus::converged) return 0;
   if (solve_converged)
     say_not_reached(scene, *refinement, *certificate, progress);

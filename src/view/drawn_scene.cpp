@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <sunfleck/core/error.hpp>
+#include <sunfleck/scene/facet_rows.hpp>
 
 #include "view/outline.hpp"
 
@@ -53,11 +54,32 @@ ResultGeometry as_geometry(const FacetScene& scene, std::vector<std::uint32_t>& 
 }  // namespace
 
 DrawnScene::DrawnScene(const Result& result, bool ground) : geometry_(result.geometry()), materials_(result.materials()) {
-  number_organs(result);
+  number_organs(result.organ_count(), result.file());
   if (!ground) geometry_.ground = {};
   if (size() == 0) throw InputError(result.file(), ground ? "no facet" : "no plant, only ground", "something to draw");
   measure();
   if (all_bounds_.empty()) throw InputError(result.file(), "only facets without area", "something to draw");
+}
+
+DrawnScene::DrawnScene(const Scene& scene, const PlacedScene& placed) : materials_(FacetRows(scene, placed).materials()) {
+  for (const auto& entry : scene.plants) {
+    geometry_.plants.push_back({entry.name, entry.plant, entry.shape_optics, {0}});
+    auto& starts = geometry_.plants.back().shape_facet;
+    for (const auto& shape : entry.plant->shapes) starts.push_back(starts.back() + shape.triangle_count);
+  }
+  for (const auto& copy : placed.copies) geometry_.copies.push_back({copy.plant, copy.map, copy.first_facet});
+  for (const auto& t : placed.ground) {
+    const auto first = static_cast<std::uint32_t>(geometry_.ground.vertices.size());
+    geometry_.ground.vertices.insert(geometry_.ground.vertices.end(), t.begin(), t.end());
+    geometry_.ground.triangles.push_back({first, first + 1, first + 2});
+  }
+  geometry_.ground_optics = static_cast<std::uint32_t>(materials_.size() - 1);
+  geometry_.plant_facets = placed.first_ground_facet;
+  geometry_.periodic = scene.periodic;
+  number_organs(placed.organs, scene.file);
+  if (size() == 0) throw InputError(scene.file, "no facet", "something to draw");
+  measure();
+  if (all_bounds_.empty()) throw InputError(scene.file, "only facets without area", "something to draw");
 }
 
 DrawnScene::DrawnScene(const FacetScene& scene) : materials_(scene.materials) {
@@ -71,7 +93,7 @@ DrawnScene::DrawnScene(const FacetScene& scene) : materials_(scene.materials) {
   measure();
 }
 
-void DrawnScene::number_organs(const Result& result) {
+void DrawnScene::number_organs(std::uint64_t in_all, const std::string& file) {
   // Organs are numbered as their first facet comes, per copy and structure, then the ground, two facets a cell or all of one mesh.
   std::vector<std::uint32_t> organs_of_plant;
   for (const auto& entry : geometry_.plants) {
@@ -91,11 +113,10 @@ void DrawnScene::number_organs(const Result& result) {
     next += organs_of_plant[copy.plant];
   }
   const std::size_t cells = geometry_.ground.triangles.size();
-  const std::uint64_t in_all = result.organ_count(), left = in_all - std::min<std::uint64_t>(next, in_all);
+  const std::uint64_t left = in_all - std::min<std::uint64_t>(next, in_all);
   ground_in_one_ = left == 1;
   if (next > in_all || (cells > 0 && left != 1 && left < (cells + 1) / 2))
-    throw InputError(location(result.file(), 0, "geometry"), "shapes that do not match the organs",
-                     "facets that belong to the rows of /organs");
+    throw InputError(location(file, 0, "geometry"), "shapes that do not match the organs", "facets that belong to the rows of /organs");
   ground_organ_ = static_cast<std::uint32_t>(next);
 }
 

@@ -102,7 +102,7 @@ void NaturalPaint::read(Progress& progress) {
     });
     return out;
   };
-  rest_ = read_seen(seen_, scene_.size(), 2 * b, rest, progress);
+  rest_ = read_seen(seen_, scene_.size(), 2 * b, rest, progress, light_.block);
   if (ground_marked_) prepare_open_ground();
 }
 

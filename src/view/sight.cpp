@@ -42,12 +42,13 @@ PlacedHit Sight::hit(const CameraRay& ray) const {
 }
 
 std::vector<float> read_seen(const SeenFacets& seen, std::size_t facets, std::size_t width, const LightSource::Read& read,
-                             Progress& progress) {
-  constexpr std::size_t block = std::size_t{1} << 17;
+                             Progress& progress, std::size_t block) {
   std::vector<float> out(seen.count() * width);
   for (std::size_t first = 0; first < facets; first += block) {
-    progress.check();
-    progress.fraction("values", static_cast<double>(first) / static_cast<double>(facets));
+    if (first % (std::size_t{1} << 17) < block) {
+      progress.check();
+      progress.fraction("values", static_cast<double>(first) / static_cast<double>(facets));
+    }
     const std::size_t count = std::min(block, facets - first);
     if (!seen.any(first, count)) continue;
     const auto values = read(first, count);

@@ -32,6 +32,6 @@ class Sight {
 /// Reads values of those facets that are seen: row r of the answer is the facet of row r, `width` numbers each. Throws Error if a source
 /// hands over too few.
 std::vector<float> read_seen(const SeenFacets& seen, std::size_t facets, std::size_t width, const LightSource::Read& read,
-                             Progress& progress);
+                             Progress& progress, std::size_t block = std::size_t{1} << 17);
 
 }  // namespace sunfleck

@@ -19,6 +19,7 @@ struct SolveOptions {
   std::optional<std::uint64_t> seed;
   std::optional<std::uint32_t> samples;  ///< reference method, per facet
   int threads = 0;
+  std::optional<std::string> picture;  ///< .png that is drawn while rows come by
   std::vector<std::string> only;       ///< placements that are opened, as [solve] only
   std::optional<std::string> stop_at;  ///< as [solve] stop_at: TYPE, size=METRES or leaf_count=N
   bool certificate = true;

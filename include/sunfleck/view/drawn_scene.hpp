@@ -8,6 +8,7 @@
 
 #include <sunfleck/result/result_reader.hpp>
 #include <sunfleck/scene/facets.hpp>
+#include <sunfleck/scene/placed_scene.hpp>
 
 namespace sunfleck {
 
@@ -17,6 +18,8 @@ class DrawnScene {
   /// A result as it was solved. Without `ground`, plants only. Works for files that keep organs only. Throws InputError where the file
   /// holds no geometry, where its organs do not fit it, or where nothing is left to draw.
   explicit DrawnScene(const Result& result, bool ground = true);
+  /// A scene in memory, its copies as they are placed.
+  DrawnScene(const Scene& scene, const PlacedScene& placed);
   /// A scene in memory, as one mesh.
   explicit DrawnScene(const FacetScene& scene);
 
@@ -69,7 +72,8 @@ class DrawnScene {
   const std::vector<Vec3>& outline() const { return outline_; }
 
  private:
-  void number_organs(const Result& result);
+  /// `organs`: of the scene; `file` for errors.
+  void number_organs(std::uint64_t organs, const std::string& file);
   void measure();
 
   ResultGeometry geometry_;

@@ -73,8 +73,9 @@ struct LightSource {
   std::optional<ColourBands> colours = std::nullopt;  ///< none: colour_bands()
   std::optional<Sun> sun;                             ///< its beam is drawn sharp where `sunlit` is there too
   using Read = std::function<std::vector<float>(std::size_t first, std::size_t count)>;
-  Read irradiance;  ///< [count][2][b] front, back [W m^-2]
-  Read sunlit;      ///< [count][2] fraction of the side that the sun reaches; may be empty
+  Read irradiance;                           ///< [count][2][b] front, back [W m^-2]
+  Read sunlit;                               ///< [count][2] fraction of the side that the sun reaches; may be empty
+  std::size_t block = std::size_t{1} << 17;  ///< facets that are read together where any of them is seen
 };
 
 /// Reads from a light in memory, which must outlive it, over `facets` facets.
