@@ -30,6 +30,34 @@ std::vector<Batch> batches_of(const SceneLight& s, const std::vector<std::uint32
   return out;
 }
 
+std::vector<std::pair<std::size_t, std::size_t>> runs_of_members(const std::vector<Batch>& batches, std::size_t first, std::size_t last) {
+  std::vector<std::pair<std::size_t, std::size_t>> out;
+  for (; first < last; first = out.back().second) {
+    std::size_t end = first + 1;
+    while (end < last && batches[end].members == batches[first].members) ++end;
+    out.emplace_back(first, end);
+  }
+  return out;
+}
+
+std::vector<double> sky_areas(const LineOperator& op, const RayEnd* ends) {
+  std::vector<float> open(op.fields());
+  for (std::size_t f = 0; f < op.fields(); ++f) {
+    std::uint32_t n = 0;
+    for (auto k = op.point_start[f]; k < op.point_start[f + 1]; ++k) n += ends[k].is_sky();
+    open[f] = n ? static_cast<float>(n) / static_cast<float>(op.point_start[f + 1] - op.point_start[f]) : 0.0f;
+  }
+  std::vector<double> out(2 * op.lines.size(), 0.0);
+  for (std::size_t side = 0; side < out.size(); ++side) {
+    if (op.lines[side / 2] == 0) continue;
+    float lines = 0;
+    for (auto k = op.outside.start[side]; k < op.outside.start[side + 1]; ++k)
+      lines += static_cast<float>(op.outside.count[k]) * open[op.outside.column[k]];
+    out[side] = double{op.open_area[side / 2]} * lines / op.lines[side / 2];
+  }
+  return out;
+}
+
 std::vector<const RayEnd*> stored_ends(const SceneLight& s, const Batch& b) {
   std::vector<const RayEnd*> out;
   for (const auto m : b.members) out.push_back(s.ends.data() + s.end_start[m]);

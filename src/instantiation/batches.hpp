@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "instantiation/local_solve.hpp"
@@ -20,6 +21,12 @@ struct Batch {
 
 /// Batches over the members given, members of one original together, in a fixed order.
 std::vector<Batch> batches_of(const SceneLight& s, const std::vector<std::uint32_t>& members);
+
+/// Runs of batches of the same members, which differ in their columns, among [first, last) of some batches: first and one past the last.
+std::vector<std::pair<std::size_t, std::size_t>> runs_of_members(const std::vector<Batch>& batches, std::size_t first, std::size_t last);
+
+/// Area of each side of an original's elements from which lines leave for the sky [sides] [m^2]; `ends`: of the operator's points.
+std::vector<double> sky_areas(const LineOperator& op, const RayEnd* ends);
 
 /// Where the rays of a batch's members end, as stored for the coarse operator.
 std::vector<const RayEnd*> stored_ends(const SceneLight& s, const Batch& b);

@@ -20,8 +20,13 @@ constexpr std::uint32_t most_sweeps = 200;
 
 class ClosedLight {
  public:
-  ClosedLight(const SceneLight& s, const Light& total)
-      : s_(s), total_(total), absorbed_(s.placed.solved() * s.columns, 0.0), direct_(absorbed_), escaped_(absorbed_) {}
+  ClosedLight(const SceneLight& s, const Light& total) : s_(s), total_(total) {
+    first_part_.push_back(0);
+    for (std::uint32_t m = 0; m < s.members.size(); ++m)
+      first_part_.push_back(first_part_.back() + s.members.found.members[m].copies.size());
+    absorbed_.assign(first_part_.back() * s.columns, 0.0);
+    direct_ = escaped_ = absorbed_;
+  }
 
   void run(SolveReport& report) {
     bool any_far = false;
@@ -29,25 +34,24 @@ class ClosedLight {
     std::vector<std::uint32_t> wanted;
     for (std::uint32_t m = 0; m < s_.members.size(); ++m)
       if (any_far || !all_opened(m)) wanted.push_back(m);
-    const auto batches = batches_of(s_, wanted);
+    absorb(wanted);
+    const auto absorbed = by_copy(absorbed_);
+    add_structures(absorbed, report);
+    if (!s_.placed.partial) add_balance(absorbed, report);
+  }
+
+  /// What some members absorb, from their fields.
+  void absorb(const std::vector<std::uint32_t>& members) {
+    const auto batches = batches_of(s_, members);
     tbb::parallel_for(std::size_t{0}, batches.size(), [&](std::size_t q) {
       if (s_.progress.cancelled()) return;
       with_width(batches[q].width, [&](auto constant) { absorb<decltype(constant)::value>(batches[q]); });
     });
     s_.progress.check();
-    add_structures(report);
-    if (!s_.placed.partial) add_balance(report);
   }
 
-  /// Absorbed by each of some members [member][columns] W.
-  std::vector<double> by_member(const std::vector<std::uint32_t>& wanted) {
-    by_member_.assign(s_.members.size() * s_.columns, 0.0);
-    const auto batches = batches_of(s_, wanted);
-    tbb::parallel_for(std::size_t{0}, batches.size(), [&](std::size_t q) {
-      with_width(batches[q].width, [&](auto constant) { absorb<decltype(constant)::value>(batches[q]); });
-    });
-    return std::move(by_member_);
-  }
+  /// Absorbed by a member of one part, per column [W].
+  const double* of_member(std::uint32_t m) const { return absorbed_.data() + first_part_[m] * s_.columns; }
 
  private:
   bool all_opened(std::uint32_t m) const {
@@ -70,14 +74,10 @@ class ClosedLight {
     add_outside<width>(op, field, source);
     solve_inside<width>(op, e.material, optics_of<width>(s_, b), source, static_cast<float>(s_.density.inner_tolerance), most_sweeps,
                         radiosity);
-    for (std::size_t i = 0; i < e.size(); ++i) {
-      if (op.lines[i] == 0) continue;
-      const float share = 1.0f / static_cast<float>(op.lines[i]);
-      for (std::size_t side = 2 * i; side < 2 * i + 2; ++side) add_row<width>(op.inside, side, share, radiosity.data(), source[side]);
-    }
+    add_inside<width>(op, radiosity, source);
     for (std::size_t j = 0; j < b.members.size(); ++j) {
       add_facets<width>(b, j, direct, source);
-      if (by_member_.empty()) add_escaped<width>(b, j, ends[j], radiosity);
+      add_escaped<width>(b, j, ends[j], radiosity);
     }
   }
 
@@ -91,9 +91,7 @@ class ClosedLight {
     for (std::size_t t = 0; t < s.size(); ++t) {
       if (s.split[t] == 0) continue;
       const std::uint32_t facet = e.order[t];
-      const auto part =
-          std::upper_bound(original.facet_of_part.begin(), original.facet_of_part.end(), facet) - original.facet_of_part.begin() - 1;
-      const std::uint32_t copy = s_.members.found.members[m].copies[static_cast<std::size_t>(part)];
+      const std::size_t part = first_part_[m] + original.part_of(facet);
       const auto& optics = s_.scene.optics[original.facet_material[facet]];
       for (std::size_t c = 0; c < b.columns; ++c) {
         const std::size_t column = b.first_column + c, band = column % s_.bands, lane = j * b.columns + c;
@@ -107,41 +105,37 @@ class ClosedLight {
             absorbed += std::max(0.0, absorptance[side]) * open * all[from][lane];
             first += open * direct[from][lane];
           }
-        if (!by_member_.empty()) {
-          by_member_[m * s_.columns + column] += scale * s.cell_area[t] * absorbed;
-          continue;
-        }
-        absorbed_[copy * s_.columns + column] += scale * s.cell_area[t] * absorbed;
-        direct_[copy * s_.columns + column] += scale * s.cell_area[t] * first;
+        absorbed_[part * s_.columns + column] += scale * s.cell_area[t] * absorbed;
+        direct_[part * s_.columns + column] += scale * s.cell_area[t] * first;
       }
     }
   }
 
-  /// Light that leaves for the sky; of a member of several copies it counts with the first.
+  /// Light that leaves for the sky; of a member of several parts it counts with the first.
   template <int width>
   void add_escaped(const Batch& b, std::size_t j, const RayEnd* ends, const LaneField<width>& radiosity) {
-    const auto& original = s_.members.originals[b.original];
-    const LineOperator& op = *original.coarse;
     const std::uint32_t m = b.members[j];
+    const auto areas = sky_areas(*s_.members.originals[b.original].coarse, ends);
     const double scale = s_.members.maps[m].scale * s_.members.maps[m].scale;
-    std::vector<float> open(op.fields());
-    for (std::size_t f = 0; f < op.fields(); ++f) {
-      std::uint32_t n = 0;
-      for (auto k = op.point_start[f]; k < op.point_start[f + 1]; ++k) n += ends[k].is_sky();
-      open[f] = n ? static_cast<float>(n) / static_cast<float>(op.point_start[f + 1] - op.point_start[f]) : 0.0f;
-    }
-    double* out = &escaped_[s_.members.found.members[m].copies.front() * s_.columns + b.first_column];
-    for (std::size_t side = 0; side < radiosity.size(); ++side) {
-      if (op.lines[side / 2] == 0) continue;
-      double lines = 0;
-      for (auto k = op.outside.start[side]; k < op.outside.start[side + 1]; ++k)
-        lines += double{static_cast<float>(op.outside.count[k])} * open[op.outside.column[k]];
-      const double area = scale * op.open_area[side / 2] * lines / op.lines[side / 2];
-      for (std::size_t c = 0; c < b.columns; ++c) out[c] += area * radiosity[side][j * b.columns + c];
-    }
+    double* out = &escaped_[first_part_[m] * s_.columns + b.first_column];
+    for (std::size_t side = 0; side < areas.size(); ++side)
+      if (areas[side] > 0)
+        for (std::size_t c = 0; c < b.columns; ++c) out[c] += scale * areas[side] * radiosity[side][j * b.columns + c];
   }
 
-  void add_structures(SolveReport& report) const {
+  /// Sums of parts by the copies that they are of.
+  std::vector<double> by_copy(const std::vector<double>& of_part) const {
+    std::vector<double> out(s_.placed.solved() * s_.columns, 0.0);
+    for (std::uint32_t m = 0; m < s_.members.size(); ++m) {
+      const auto& copies = s_.members.found.members[m].copies;
+      for (std::size_t part = 0; part < copies.size(); ++part)
+        for (std::size_t c = 0; c < s_.columns && copies[part] < s_.placed.solved(); ++c)
+          out[copies[part] * s_.columns + c] += of_part[(first_part_[m] + part) * s_.columns + c];
+    }
+    return out;
+  }
+
+  void add_structures(const std::vector<double>& absorbed, SolveReport& report) const {
     const auto& placed = s_.placed;
     report.structures.assign(placed.closed.size() * s_.columns, 0.0);
     std::vector<std::vector<std::uint64_t>> solved(placed.closed.size());  // copies per plant, where some are not
@@ -151,14 +145,14 @@ class ClosedLight {
       const auto row = placed.near[n].structure;
       if (!placed.closed[row].solved) ++solved[row][placed.near[n].plant];
       for (std::size_t c = 0; c < s_.columns; ++c)
-        report.structures[row * s_.columns + c] += absorbed_[(placed.copies.size() + n) * s_.columns + c];
+        report.structures[row * s_.columns + c] += absorbed[(placed.copies.size() + n) * s_.columns + c];
     }
     std::vector<double> sum(s_.scene.plants.size() * s_.columns, 0.0);
     std::vector<std::uint64_t> copies(s_.scene.plants.size(), 0);
     for (std::size_t i = 0; i < placed.solved(); ++i) {
       const auto plant = placed.plant_of(i);
       ++copies[plant];
-      for (std::size_t c = 0; c < s_.columns; ++c) sum[plant * s_.columns + c] += absorbed_[i * s_.columns + c];
+      for (std::size_t c = 0; c < s_.columns; ++c) sum[plant * s_.columns + c] += absorbed[i * s_.columns + c];
     }
     std::map<std::pair<bool, std::uint32_t>, std::vector<std::uint64_t>> known;
     for (std::size_t k = 0; k < placed.closed.size(); ++k) {
@@ -174,20 +168,21 @@ class ClosedLight {
     }
   }
 
-  void add_balance(SolveReport& report) const {
+  void add_balance(const std::vector<double>& absorbed, SolveReport& report) const {
+    const auto direct = by_copy(direct_), escaped = by_copy(escaped_);
     for (std::size_t i = s_.placed.copies.size(); i < s_.placed.solved(); ++i)
       for (std::size_t c = 0; c < s_.columns; ++c) {
         auto& out = report.balance[c / s_.bands][c % s_.bands];
-        out.incident += direct_[i * s_.columns + c];
-        out.leaves += absorbed_[i * s_.columns + c];
-        out.escaped += escaped_[i * s_.columns + c];
+        out.incident += direct[i * s_.columns + c];
+        out.leaves += absorbed[i * s_.columns + c];
+        out.escaped += escaped[i * s_.columns + c];
       }
   }
 
   const SceneLight& s_;
   const Light& total_;
-  std::vector<double> absorbed_, direct_, escaped_;  ///< [solved copies][columns] W
-  std::vector<double> by_member_;                    ///< if asked for: [members][columns]
+  std::vector<std::size_t> first_part_;              ///< [members + 1]
+  std::vector<double> absorbed_, direct_, escaped_;  ///< [parts of all members][columns] W
 };
 
 }  // namespace
@@ -197,7 +192,8 @@ void judge_stand_ins(const SceneLight& s, const Light& light, const std::vector<
   std::vector<std::uint32_t> wanted;
   for (std::uint32_t m = 0; m < s.members.size(); ++m)
     if (s.members.found.members[m].stands_in) wanted.push_back(m);
-  const auto closed = ClosedLight(s, light).by_member(wanted);
+  ClosedLight closed(s, light);
+  closed.absorb(wanted);
   std::vector<double> weight(s.bands, 0.0), mean(s.bands, 0.0), square(s.bands, 0.0), difference(s.bands, 0.0);
   for (const auto& copy : opened) {
     const auto& pieces = s.members.approximation.of_plant[s.placed.plant_of(copy.copy)];
@@ -207,7 +203,7 @@ void judge_stand_ins(const SceneLight& s, const Light& light, const std::vector<
       const std::size_t k = piece++;  // members of a copy stand in the order of its pieces
       if (pieces[k].rest || !(copy.area[k] > 0)) continue;
       for (std::size_t c = 0; c < s.columns; ++c) {
-        const double own = copy.absorbed[k * s.columns + c] / copy.area[k], stood = closed[m * s.columns + c] / copy.area[k];
+        const double own = copy.absorbed[k * s.columns + c] / copy.area[k], stood = closed.of_member(m)[c] / copy.area[k];
         const std::size_t b = c % s.bands;
         weight[b] += copy.area[k];
         mean[b] += copy.area[k] * own;

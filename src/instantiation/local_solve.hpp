@@ -47,6 +47,16 @@ void add_outside(const LineOperator& op, const LaneField<width>& field, LaneFiel
   }
 }
 
+/// out_i += sum_j n_ij x_j / W_i: what comes from inside. `x`: by what the operator's columns are.
+template <int width>
+void add_inside(const LineOperator& op, const LaneField<width>& x, LaneField<width>& out) {
+  for (std::size_t i = 0; i < op.lines.size(); ++i) {
+    if (op.lines[i] == 0) continue;
+    const float share = 1.0f / static_cast<float>(op.lines[i]);
+    for (std::size_t side = 2 * i; side < 2 * i + 2; ++side) add_row<width>(op.inside, side, share, x.data(), out[side]);
+  }
+}
+
 /// field_f = sum_i n_if B_i / n_f: what goes out. Fields that no line leaves through take the mean of their direction.
 template <int width>
 void outgoing(const LineOperator& op, const LaneField<width>& radiosity, LaneField<width>& field) {

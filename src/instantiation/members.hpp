@@ -1,6 +1,7 @@
 // A scene as members of originals, ready for light.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -20,6 +21,11 @@ struct OriginalLight {
   std::vector<std::uint32_t> facet_material;  ///< [n] row of Scene::optics, by facet of the original
   std::vector<std::uint32_t> facet_of_part;   ///< [parts + 1] first facet of each part
   std::unique_ptr<LineOperator> coarse;
+
+  /// The part that a facet of the original belongs to.
+  std::size_t part_of(std::uint32_t facet) const {
+    return static_cast<std::size_t>(std::upper_bound(facet_of_part.begin(), facet_of_part.end(), facet) - facet_of_part.begin() - 1);
+  }
 };
 
 /// Members and what they share. `copies` points into `originals`.

@@ -64,11 +64,21 @@ class Opening {
           if (fine->bytes() > fine_bytes_) fine_bytes_ = fine->bytes();
         }
         std::vector<std::vector<Balance>> partial(end - begin);
-        tbb::parallel_for(begin, end, [&](std::size_t q) {
+        const auto runs = runs_of_members(batches, begin, end);
+        tbb::parallel_for(std::size_t{0}, runs.size(), [&](std::size_t r) {
           if (s_.progress.cancelled()) return;
-          const auto ends = stored_ends(s_, batches[q]);
-          with_width(batches[q].width,
-                     [&](auto constant) { open<decltype(constant)::value>(batches[q], ends, *fine, rows, partial[q - begin]); });
+          const auto [first_batch, last_batch] = std::pair(runs[r]);
+          std::vector<std::vector<RayEnd>> ends;  // once for all columns
+          for (const auto m : batches[first_batch].members) {
+            ends.emplace_back(fine->points.size());
+            s_.look_from(m, *fine, 0, fine->fields(), ends.back().data());
+          }
+          std::vector<const RayEnd*> fine_ends;
+          for (const auto& list : ends) fine_ends.push_back(list.data());
+          const std::size_t base = first_batch;
+          tbb::parallel_for(base, static_cast<std::size_t>(last_batch), [&](std::size_t q) {
+            open(batches[q], stored_ends(s_, batches[q]), *fine, fine_ends, rows, partial[q - begin]);
+          });
         });
         s_.progress.check();
         for (std::size_t q = begin; q < end; ++q) add_balance(batches[q], partial[q - begin]);
@@ -112,10 +122,8 @@ class Opening {
     auto rows = placed_rows({own});
     const auto batches = batches_of(s_, {own});
     std::vector<std::vector<Balance>> partial(batches.size());
-    tbb::parallel_for(std::size_t{0}, batches.size(), [&](std::size_t q) {
-      with_width(batches[q].width,
-                 [&](auto constant) { open<decltype(constant)::value>(batches[q], {ends.data()}, op, rows, partial[q], true); });
-    });
+    tbb::parallel_for(std::size_t{0}, batches.size(),
+                      [&](std::size_t q) { open(batches[q], {ends.data()}, op, {ends.data()}, rows, partial[q]); });
     s_.progress.check();
     for (std::size_t q = 0; q < batches.size(); ++q) add_balance(batches[q], partial[q]);
     s_.end_own();
@@ -186,10 +194,15 @@ class Opening {
     return out;
   }
 
-  /// `coarse_ends`: of the original's operator. If that is the fine one already, they serve twice.
+  /// `coarse_ends` are of the original's own operator, `fine_ends` of the one that light is gathered along; they may be the same.
+  void open(const Batch& b, const std::vector<const RayEnd*>& coarse_ends, const LineOperator& fine,
+            const std::vector<const RayEnd*>& fine_ends, std::vector<Rows>& rows, std::vector<Balance>& balance) {
+    with_width(b.width, [&](auto constant) { open_lanes<decltype(constant)::value>(b, coarse_ends, fine, fine_ends, rows, balance); });
+  }
+
   template <int width>
-  void open(const Batch& b, const std::vector<const RayEnd*>& coarse_ends, const LineOperator& fine, std::vector<Rows>& rows,
-            std::vector<Balance>& balance, bool same = false) {
+  void open_lanes(const Batch& b, const std::vector<const RayEnd*>& coarse_ends, const LineOperator& fine,
+                  const std::vector<const RayEnd*>& fine_ends, std::vector<Rows>& rows, std::vector<Balance>& balance) {
     const auto& original = s_.members.originals[b.original];
     const auto& e = original.elements;
     const std::size_t sides = 2 * e.size();
@@ -200,28 +213,16 @@ class Opening {
     solve_inside<width>(*original.coarse, e.material, optics_of<width>(s_, b), source, static_cast<float>(s_.density.inner_tolerance),
                         most_sweeps, radiosity);
 
-    std::vector<std::vector<RayEnd>> ends;
-    std::vector<const RayEnd*> pointers = coarse_ends;
-    for (std::size_t j = 0; j < b.members.size() && !same; ++j) {
-      ends.emplace_back(fine.points.size());
-      s_.look_from(b.members[j], fine, 0, fine.fields(), ends.back().data());
-      pointers[j] = ends.back().data();
-    }
     // the sky's light first, for the balance
     LaneField<width> sky(sides, Lanes<width>{}), scattered(sides, Lanes<width>{}), cells;
     if (fine.seen() == LineOperator::Seen::cells) on_cells<width>(b, radiosity, cells);
-    const Lanes<width>* met = cells.empty() ? radiosity.data() : cells.data();
-    incoming<width>(s_, b, fine, pointers, nullptr, true, field);
+    incoming<width>(s_, b, fine, fine_ends, nullptr, true, field);
     add_outside<width>(fine, field, sky);
-    incoming<width>(s_, b, fine, pointers, &total_, false, field);
+    incoming<width>(s_, b, fine, fine_ends, &total_, false, field);
     add_outside<width>(fine, field, scattered);
-    for (std::size_t i = 0; i < e.size(); ++i) {
-      if (fine.lines[i] == 0) continue;
-      const float share = 1.0f / static_cast<float>(fine.lines[i]);
-      for (std::size_t side = 2 * i; side < 2 * i + 2; ++side) add_row<width>(fine.inside, side, share, met, scattered[side]);
-    }
+    add_inside<width>(fine, cells.empty() ? radiosity : cells, scattered);
     balance.assign(b.columns, Balance{});
-    escaped<width>(b, fine, pointers, radiosity, balance);
+    escaped<width>(b, fine, fine_ends, radiosity, balance);
     for (std::size_t j = 0; j < b.members.size(); ++j)
       member_rows<width>(b, j, fine, sky, scattered, rows, row_of_member_.at(b.members[j]), balance);
   }
@@ -270,23 +271,12 @@ class Opening {
   template <int width>
   void escaped(const Batch& b, const LineOperator& op, const std::vector<const RayEnd*>& ends, const LaneField<width>& radiosity,
                std::vector<Balance>& balance) const {
-    std::vector<float> open(op.fields());
     for (std::size_t j = 0; j < b.members.size(); ++j) {
-      for (std::size_t f = 0; f < op.fields(); ++f) {
-        std::uint32_t n = 0;
-        for (auto k = op.point_start[f]; k < op.point_start[f + 1]; ++k) n += ends[j][k].is_sky();
-        open[f] = n ? static_cast<float>(n) / static_cast<float>(op.point_start[f + 1] - op.point_start[f]) : 0.0f;
-      }
+      const auto areas = sky_areas(op, ends[j]);
       const double scale = s_.members.maps[b.members[j]].scale * s_.members.maps[b.members[j]].scale;
-      for (std::size_t side = 0; side < radiosity.size(); ++side) {
-        if (op.lines[side / 2] == 0) continue;
-        float lines = 0;
-        for (auto k = op.outside.start[side]; k < op.outside.start[side + 1]; ++k)
-          lines += static_cast<float>(op.outside.count[k]) * open[op.outside.column[k]];
-        if (lines == 0) continue;
-        const double area = scale * op.open_area[side / 2] * lines / op.lines[side / 2];
-        for (std::size_t c = 0; c < b.columns; ++c) balance[c].escaped += area * radiosity[side][j * b.columns + c];
-      }
+      for (std::size_t side = 0; side < areas.size(); ++side)
+        if (areas[side] > 0)
+          for (std::size_t c = 0; c < b.columns; ++c) balance[c].escaped += scale * areas[side] * radiosity[side][j * b.columns + c];
     }
   }
 
@@ -298,11 +288,12 @@ class Opening {
     const auto& e = original.elements;
     const auto& s = e.surface;
     const double scale = s_.members.maps[m].scale * s_.members.maps[m].scale;
+    std::vector<Vec3> towards_sun;
+    for (const auto* sun : s_.lights.suns) towards_sun.push_back(s_.members.maps[m].direction_back(sun->direction));
     for (std::size_t t = 0; t < s.size(); ++t) {
       if (s.split[t] == 0) continue;
       const std::uint32_t facet = e.order[t];
-      const auto part = static_cast<std::size_t>(std::upper_bound(original.facet_of_part.begin(), original.facet_of_part.end(), facet) -
-                                                 original.facet_of_part.begin() - 1);
+      const std::size_t part = original.part_of(facet);
       Rows& out = rows[first_row + part];
       if (out.count == 0) continue;
       const std::size_t i = facet - original.facet_of_part[part];
@@ -310,25 +301,31 @@ class Opening {
       const float share = 1.0f / static_cast<float>(end - begin);
       const auto& optics = s_.scene.optics[original.facet_material[facet]];
       const double area = scale * s.cell_area[t] * (end - begin);
+      auto known = LightSources::none;  // sun that `cosine` and `sunlit` are of: columns of one state follow each other
+      double cosine = 0;
+      float sunlit = 0;
       for (std::size_t c = 0; c < b.columns; ++c) {
         const std::size_t column = b.first_column + c, state = column / s_.bands, band = column % s_.bands, lane = j * b.columns + c;
         const auto sun = s_.lights.sun_of_state[state];
+        if (sun != LightSources::none && sun != known) {
+          known = sun;
+          cosine = glm::dot(Vec3{s.normal[0][t], s.normal[1][t], s.normal[2][t]}, towards_sun[sun]);
+          const std::uint8_t* lit = s_.lit_cells_of(sun, m);
+          sunlit = 0;
+          for (auto cell = begin; cell < end; ++cell) sunlit += share * static_cast<float>(lit[cell]) / 255.0f;
+        }
         const float sun_strength = sun == LightSources::none ? 0.0f : static_cast<float>(s_.scene.states[state].sun->irradiance[band]);
         double absorbed = 0;
         for (std::size_t side = 0; side < 2; ++side) {
-          float direct = 0, rest = 0, lit = 0;
+          float direct = 0, rest = 0;
           for (auto cell = begin; cell < end; ++cell) {
             const std::size_t from = 2 * std::size_t{fine.stand_in[e.element_of_cell[cell]]} + side;
             direct += share * fine.open(cell) * sky[from][lane];
             rest += share * fine.open(cell) * scattered[from][lane];
           }
           if (sun != LightSources::none) {
-            const Vec3 d = s_.members.maps[m].direction_back(s_.lights.suns[sun]->direction);
-            const double cosine = s.normal[0][t] * d.x + s.normal[1][t] * d.y + s.normal[2][t] * d.z;
-            if ((cosine > 0) == (side == 0)) {
-              for (auto cell = begin; cell < end; ++cell) lit += share * static_cast<float>(s_.lit_cells_of(sun, m)[cell]) / 255.0f;
-              direct += lit * static_cast<float>(std::fabs(cosine)) * sun_strength;
-            }
+            const float lit = (cosine > 0) == (side == 0) ? sunlit : 0.0f;
+            direct += lit * static_cast<float>(std::fabs(cosine)) * sun_strength;
             if (band == 0) out.sunlit[(state * out.count + i) * 2 + side] = lit;
           }
           out.irradiance[((state * out.count + i) * 2 + side) * s_.bands + band] = direct + rest;
