@@ -125,11 +125,11 @@ class ClosedLight {
 
   /// Sums of parts by the copies that they are of.
   std::vector<double> by_copy(const std::vector<double>& of_part) const {
-    std::vector<double> out(s_.placed.solved() * s_.columns, 0.0);
+    std::vector<double> out(s_.placed.all_copies() * s_.columns, 0.0);
     for (std::uint32_t m = 0; m < s_.members.size(); ++m) {
       const auto& copies = s_.members.found.members[m].copies;
       for (std::size_t part = 0; part < copies.size(); ++part)
-        for (std::size_t c = 0; c < s_.columns && copies[part] < s_.placed.solved(); ++c)
+        for (std::size_t c = 0; c < s_.columns; ++c)
           out[copies[part] * s_.columns + c] += of_part[(first_part_[m] + part) * s_.columns + c];
     }
     return out;
@@ -149,7 +149,11 @@ class ClosedLight {
     }
     std::vector<double> sum(s_.scene.plants.size() * s_.columns, 0.0);
     std::vector<std::uint64_t> copies(s_.scene.plants.size(), 0);
-    for (std::size_t i = 0; i < placed.solved(); ++i) {
+    std::vector<bool> known_light(placed.all_copies(), false);  // far ones too, if they are the first of their kind
+    for (std::uint32_t m = 0; m < s_.members.size(); ++m)
+      for (const auto c : s_.members.found.members[m].copies) known_light[c] = true;
+    for (std::size_t i = 0; i < placed.all_copies(); ++i) {
+      if (!known_light[i]) continue;
       const auto plant = placed.plant_of(i);
       ++copies[plant];
       for (std::size_t c = 0; c < s_.columns; ++c) sum[plant * s_.columns + c] += absorbed[i * s_.columns + c];

@@ -97,6 +97,29 @@ TEST_CASE("only: a tile is lit in its surroundings as when all tiles are opened;
   CHECK(placed.closed.size() == 2999 + 3004);
 }
 
+TEST_CASE("only: of a plant that stands far away only, the first copy stands for all") {
+  auto scene = orchard(1);
+  add(scene, "bush", leaves(2500, 0.06, {2, 2, 1}, 5), 0);
+  scene.plants[1].placements.clear();
+  // groups of bushes, so many that they are not solved with the tile
+  GroupEntry hedge;
+  hedge.name = "hedge";
+  for (int i = 0; i < 210; ++i) hedge.members.push_back({false, 1, {Affine::translate({2.5 * (i % 15), 30 + 2.5 * (i / 15), 0})}});
+  hedge.placements = {{}, {Affine::translate({0, 40, 0})}};
+  scene.groups.push_back(hedge);
+  scene.ground = flat_ground({60, 160}, {10, 60}, {1, 1}, {0.12, 0.2});
+  scene.solve.only = {"stand"};
+  const auto run = opened(scene);
+  REQUIRE(run.placed.closed.size() == 2);
+  CHECK(run.placed.near.empty());
+  CHECK(run.placed.far.size() > 50);  // within 50 heights
+  for (std::size_t k = 0; k < 2; ++k) {
+    CHECK_FALSE(run.placed.closed[k].solved);
+    for (std::size_t band = 0; band < 2; ++band) CHECK(run.report.structures[k * 2 + band] > 0);
+  }
+  CHECK(run.report.structures[0] == Approx(run.report.structures[2]).epsilon(1e-9));  // the same bushes
+}
+
 TEST_CASE("only: what is opened agrees with path tracing through the whole scene") {
   auto scene = orchard(3);
   scene.solve.only = {"stand 0/tile 1/row 1"};
