@@ -57,8 +57,8 @@ TEST_CASE("approximate instancing: plants whose branches share originals while c
   for (std::size_t band = 0; band < 2; ++band) {
     const auto a = organ_power(run, band), b = organ_power(flat, band);
     CAPTURE(band, relative_rms(a, b));
-    // a neighbour's leaves stand elsewhere than their representative's: its shadows and light differ leaf by leaf, not as a whole
-    CHECK(relative_rms(a, b) < (band == 0 ? 0.06 : 0.05));
+    // .8 and 1.5 % here, as without stand-ins: side by side a neighbour's leaves that stand elsewhere hardly show
+    CHECK(relative_rms(a, b) < (band == 0 ? 0.015 : 0.022));
     double sum_a = 0, sum_b = 0;
     for (std::size_t i = 0; i < a.size(); ++i) sum_a += a[i], sum_b += b[i];
     CHECK(sum_a == Approx(sum_b).epsilon(0.01));
