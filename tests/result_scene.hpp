@@ -131,7 +131,7 @@ struct Values {
 inline SolveReport small_report() {
   SolveReport report;
   report.method = "flat";
-  report.balance = {{{10, 4, 3, 2.5}, {8, 2, 3, 3}}, {{1, 0.5, 0.25, 0.25}, {0, 0, 0, 0}}};
+  report.balance = {{{10, 4, 3, 2.5}, {8, 2, 3, 3, 0.998}}, {{1, 0.5, 0.25, 0.25}, {0, 0, 0, 0}}};
   report.convergence = {{0, 1, 0.5, 100, 0.25}, {0, 2, 0.01, 120, 0.5}};
   report.spectral_radius = {0.1, 0.8};
   report.counts = {{"links", 120}, {"rays", 7}};

@@ -18,7 +18,7 @@ struct OrganError {
 /// Absolute measures [W m^-2].
 struct ErrorEstimate {
   double rmse = 0, low = 0, high = 0;  ///< ends of the 95 % interval
-  double square_standard_error = 0;     ///< of rmse^2 [(W m^-2)^2]
+  double square_standard_error = 0;    ///< of rmse^2 [(W m^-2)^2]
   double bias = 0, bias_standard_error = 0;
 };
 

@@ -94,8 +94,8 @@ Json json_of(const Result& r) {
     if (state.sky) row["sky"] = {{"model", name_of(state.sky->model)}, {"irradiance", state.sky->irradiance}};
     for (std::size_t b = 0; b < r.bands().size(); ++b) {
       const auto& x = balance[s][b];
-      row["balance"][r.bands()[b]] = {
-          {"incident", x.incident}, {"leaves", x.leaves}, {"ground", x.ground}, {"escaped", x.escaped}, {"residual", x.residual()}};
+      row["balance"][r.bands()[b]] = {{"incident", x.incident}, {"leaves", x.leaves},       {"ground", x.ground},
+                                      {"escaped", x.escaped},   {"residual", x.residual()}, {"scattered_scale", x.scattered_scale}};
     }
     json["states"].push_back(row);
   }

@@ -346,6 +346,10 @@ std::uint32_t bin_of(const Vec3& d) {
   return ring_first[ring] + std::min(k, ring_bins[ring] - 1);
 }
 
+void release_pages(const Elements& elements) {
+  if (elements.size() > 100'000) release_freed_memory();
+}
+
 std::uint64_t LineLinks::link_count() const {
   std::uint64_t n = 0;
   for (const auto& h : half) n += h.near.size() + h.far.links.size();
@@ -433,7 +437,7 @@ LineLinks line_links(const Elements& e, const ClusterTree* tree, const SunReflec
   }
   found = {};
   bundles.clear();
-  if (e.size() > 100'000) release_freed_memory();
+  release_pages(e);
   links.whole.resize(e.size());
   std::iota(links.whole.begin(), links.whole.end(), 0u);
   const auto& inside = collector.inside();

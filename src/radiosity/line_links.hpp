@@ -80,6 +80,9 @@ struct LineLinks {
 /// Directions whose lines are held at a time: fewer the more fragments each has.
 double line_batch(std::size_t elements, const RadiosityDensity& density);
 
+/// Gives what one phase has freed back to the system, where that is much: it pays from some 100 MB on.
+void release_pages(const Elements& elements);
+
 /// Traces lines and makes links. The refinement oracle takes, for the ends of each line, the largest pair of clusters A, B with
 ///     albedo x (diameter_A + diameter_B) / distance <= density.link_error,
 /// an estimate of how much the radiosity met, relative to the mean, changes when A sees B from elsewhere within A: the light of dark

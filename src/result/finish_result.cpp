@@ -10,19 +10,22 @@ namespace {
 
 void write_balance(OutputFile& file, ArrayWriter& arrays, const SolveReport& report, std::size_t states, std::size_t bands,
                    const HeightProfile& profile) {
-  std::vector<double> columns[8];
-  const char* names[8] = {"incident", "leaves", "ground", "escaped", "residual", "absorbed_fraction_leaves", "absorbed_fraction_ground",
-                          "albedo"};
+  constexpr std::size_t n = 9;
+  std::vector<double> columns[n];
+  const char* names[n] = {
+      "incident", "leaves",         "ground", "escaped", "residual", "absorbed_fraction_leaves", "absorbed_fraction_ground",
+      "albedo",   "scattered_scale"};
   for (std::size_t s = 0; s < states; ++s)
     for (std::size_t b = 0; b < bands; ++b) {
       const Balance balance = report.balance.empty() ? Balance{} : report.balance.at(s).at(b);
       const double part = balance.incident > 0 ? 1.0 / balance.incident : 0.0;
-      const double values[8] = {balance.incident,   balance.leaves,        balance.ground,        balance.escaped,
-                                balance.residual(), balance.leaves * part, balance.ground * part, balance.escaped * part};
-      for (std::size_t i = 0; i < 8; ++i) columns[i].push_back(values[i]);
+      const double values[n] = {balance.incident,      balance.leaves,         balance.ground,
+                                balance.escaped,       balance.residual(),     balance.leaves * part,
+                                balance.ground * part, balance.escaped * part, balance.scattered_scale};
+      for (std::size_t i = 0; i < n; ++i) columns[i].push_back(values[i]);
     }
   const Id group = make_group(file, file.id(), "balance");
-  for (std::size_t i = 0; i < 8; ++i) arrays.write(group.get(), names[i], columns[i].data(), {states, bands}, i < 5 ? "W" : "1");
+  for (std::size_t i = 0; i < n; ++i) arrays.write(group.get(), names[i], columns[i].data(), {states, bands}, i < 5 ? "W" : "1");
   const Id layers = make_group(file, group.get(), "profile");
   arrays.write(layers.get(), "height", profile.height, "m");
   arrays.write(layers.get(), "area", profile.area, "m^2");

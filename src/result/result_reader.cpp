@@ -240,8 +240,9 @@ std::vector<std::vector<Balance>> Result::balance() const {
   };
   const auto incident = column("balance/incident"), leaves = column("balance/leaves"), ground = column("balance/ground"),
              escaped = column("balance/escaped");
+  const auto scale = reader.has("balance/scattered_scale") ? column("balance/scattered_scale") : std::vector<double>(s * b, 1.0);
   std::vector<std::vector<Balance>> out(s, std::vector<Balance>(b));
-  for (std::size_t i = 0; i < s * b; ++i) out[i / b][i % b] = {incident[i], leaves[i], ground[i], escaped[i]};
+  for (std::size_t i = 0; i < s * b; ++i) out[i / b][i % b] = {incident[i], leaves[i], ground[i], escaped[i], scale[i]};
   return out;
 }
 

@@ -94,7 +94,9 @@ StructureSums::StructureSums(const Scene& scene, const PlacedScene& placed, cons
 void StructureSums::rows(const IrradianceRows& r) {
   const std::size_t states = scene_.states.size(), bands = scene_.band_count();
   for (std::size_t at = 0; at < r.count;) {
-    const auto [copy, first] = rows_.at(r.first_facet + at);
+    const CopyFacet start = rows_.at(r.first_facet + at);
+    const auto copy = start.copy;
+    const auto first = start.facet;
     if (rows_.is_ground(copy)) {
       if (at > 0) throw Error("rows of plants and of the ground arrived together");
       IrradianceRows ground = r;

@@ -18,7 +18,8 @@ void check_furnace(const Scene& scene, RadiosityMethod method, Quality quality, 
   CAPTURE(name_of(method), static_cast<int>(quality), worst);
   CHECK(worst < 2e-3);
   for (const auto& b : run.report.balance[0]) {
-    CAPTURE(b.incident, b.leaves, b.ground, b.escaped);
+    CAPTURE(b.incident, b.leaves, b.ground, b.escaped, b.scattered_scale);
+    CHECK(std::abs(b.scattered_scale - 1) < 1e-5);  // all that is met is white: each line gives back what it takes
     CHECK(std::abs(b.residual()) < 1e-5 * b.incident);
     CHECK(std::abs(b.leaves) < 1e-5 * b.incident);
     CHECK(std::abs(b.escaped / b.incident - 1) < 1e-5);
@@ -67,6 +68,8 @@ TEST_CASE("radiosity: what conservative leaves over white soil reflect is what c
         CAPTURE(name_of(method), static_cast<int>(quality), s, b.incident, b.leaves, b.escaped);
         CHECK(b.incident == Approx(1).epsilon(s == 0 ? 2e-4 : 1e-3));  // the sun's cells, full ones cannot take more than all
         CHECK(b.leaves == 0.0);
+        // the sky and its reflections are counted on the same lines; the sun's cells see 1e-3 of its light wrongly, lines as much again
+        CHECK(std::abs(b.scattered_scale - 1) < (s == 0 ? 4e-4 : 4e-3));
         // scattered light is scaled so that all of it escapes; rounding is left
         CHECK(b.escaped == Approx(b.incident).epsilon(1e-5));
         CHECK(std::abs(b.residual()) < 1e-5);
@@ -96,11 +99,32 @@ TEST_CASE("radiosity: light that black ground or grey leaves absorb adds up") {
           CHECK(b.incident == Approx(on_horizontal).epsilon(1e-4));
         }
         CHECK(std::abs(b.residual()) < 1e-5 * b.incident);
+        CHECK(std::abs(b.scattered_scale - 1) < 3e-3);  // not by scaling
         double leaves_power = 0;
         for (std::size_t f = 0; f < run.facets.plant_facets; ++f) leaves_power += run.facets.area[f] * run.absorbed(f, band);
         CHECK(leaves_power == Approx(b.leaves).epsilon(1e-5));
       }
     }
+  }
+}
+
+TEST_CASE("radiosity: what sampling misses of the scattered light falls with the number of lines") {
+  // Residuals are rounding at any quality, since the scattered light is scaled; this is what the scaling hides.
+  auto scene = scene_with({"PAR", "NIR"}, {{"leaf", {0.07f, 0.42f}, {0.12f, 0.46f}, {0.04f, 0.40f}}});
+  scene.ground = flat_ground({4, 4}, {0.5, 0.5}, {8, 8}, {0.1, 0.2});
+  sky(scene, SkyModel::standard_overcast, 100);
+  point_sun(scene, {0.5, 0.3, 0.6}, 400);
+  add(scene, "canopy", leaves(150, 0.15, {1, 1, 0.6}, 9), 0);
+  for (const auto method : both_methods) {
+    double missed[2] = {0, 0};
+    for (const auto quality : {Quality::draft, Quality::fine})
+      for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+        const auto run = solve(scene, method, quality, seed);
+        for (const auto& b : run.report.balance[0]) missed[quality == Quality::fine] += std::abs(b.scattered_scale - 1) / 12;
+      }
+    CAPTURE(name_of(method), missed[0], missed[1]);
+    CHECK(missed[0] < 2e-3);
+    CHECK(missed[1] < 0.5 * missed[0]);
   }
 }
 

@@ -22,7 +22,8 @@ struct Outcome {
 Outcome solve(const TemporaryFolder& folder, const std::string& scene, const std::string& method, const std::string& error, int seed) {
   Outcome out;
   const std::string file = folder.path("r.h5");
-  out.run = run_sunfleck({"solve", data + scene + ".toml", "-o", file, "--method", method, "--error", error, "--seed", std::to_string(seed)});
+  out.run =
+      run_sunfleck({"solve", data + scene + ".toml", "-o", file, "--method", method, "--error", error, "--seed", std::to_string(seed)});
   const Result result(file), reference(data + scene + "_reference.h5");
   for (const auto& e : compare(result, reference).organs.overall) out.error.push_back(e.rmse);
   out.certificate = result.certificate().value();

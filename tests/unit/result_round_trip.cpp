@@ -117,6 +117,8 @@ TEST_CASE("A result file gives back what was written", "[result]") {
   CHECK(result.materials()[0].reflectance_back == scene.optics[0].reflectance_back);
 
   CHECK(result.balance()[0][1].ground == 3);
+  CHECK(result.balance()[1][0].scattered_scale == 1.0);
+  CHECK(result.balance()[0][1].scattered_scale == 0.998);
   CHECK(result.all<double>("balance/residual")[0] == Approx(0.5));
   CHECK(result.all<double>("balance/albedo")[0] == Approx(0.25));
   CHECK(result.all<double>("balance/absorbed_fraction_leaves")[3] == 0.0);  // no light: no fraction

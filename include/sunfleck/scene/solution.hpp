@@ -44,6 +44,8 @@ struct Balance {
   double leaves = 0;    ///< absorbed by plant facets
   double ground = 0;    ///< absorbed by the ground
   double escaped = 0;   ///< scattered light that leaves the scene
+  /// Factor by which scattered light, absorbed or escaped, was multiplied to make up for what sampling missed [-]; 1 where nothing was.
+  double scattered_scale = 1;
   double residual() const { return incident - leaves - ground - escaped; }
 };
 
