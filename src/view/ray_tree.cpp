@@ -202,7 +202,7 @@ void Tree::finish(Node& node) {
     rtcAttachGeometryByID(node.scene.get(), geometry, children_id);
     rtcReleaseGeometry(geometry);
   }
-  rtcCommitScene(node.scene.get());
+  device_.commit(node.scene.get());
   device_.check(std::to_string(node.children.size()) + " copies and the facets of a plant");
   node.child_bounds = {};
   node.children.shrink_to_fit();

@@ -31,7 +31,7 @@ struct CopyRays::Impl {
     for (const auto* surface : scene.surfaces) parts.push_back(surface_scene(*surface));
     for (std::uint32_t c = 0; c < scene.copies.size(); ++c) add_copy(c);
     if (!scene.ground.empty()) add_ground();
-    rtcCommitScene(top.get());
+    device.commit(top.get());
     device.check(fmt::format("{} copies and {} facets of the ground", instance_copy.size(), scene.ground.size()));
   }
 
@@ -61,7 +61,7 @@ struct CopyRays::Impl {
       triangles.set(t, corners, s.split[t] != 0);
     }
     triangles.attach(out.get(), 0);
-    rtcCommitScene(out.get());
+    device.commit(out.get());
     return out;
   }
 
@@ -179,7 +179,7 @@ void CopyRays::set_hidden(const std::vector<std::uint32_t>& copies, bool hidden)
     else
       rtcEnableGeometry(geometry);
   }
-  rtcCommitScene(impl_->top.get());
+  impl_->device.commit(impl_->top.get());
   impl_->device.check("copies");
 }
 

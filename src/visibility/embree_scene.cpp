@@ -3,12 +3,13 @@
 #include <algorithm>
 
 #include <fmt/format.h>
+#include <tbb/task_arena.h>
 
 #include <sunfleck/core/error.hpp>
 
 namespace sunfleck {
 
-EmbreeDevice::EmbreeDevice(Trees trees) : device_(rtcNewDevice(trees == Trees::quick ? nullptr : "threads=1")) {
+EmbreeDevice::EmbreeDevice(Trees trees) : trees_(trees), device_(rtcNewDevice(nullptr)) {
   if (!device_) throw Error(fmt::format("Embree could not be started (error {})", static_cast<int>(rtcGetDeviceError(nullptr))));
   const auto count = [](void* held, ssize_t bytes, bool) {
     *static_cast<std::atomic<std::int64_t>*>(held) += bytes;
@@ -21,6 +22,14 @@ EmbreeScenePointer EmbreeDevice::new_scene(RTCSceneFlags flags) const {
   EmbreeScenePointer scene(rtcNewScene(device_.get()));
   rtcSetSceneFlags(scene.get(), flags);
   return scene;
+}
+
+void EmbreeDevice::commit(RTCScene scene) const {
+  // Not by the device's option "threads=1": while such a device lives, all of the process has one thread (tbb::global_control).
+  if (trees_ == Trees::quick)
+    rtcCommitScene(scene);
+  else
+    tbb::task_arena(1).execute([scene] { rtcCommitScene(scene); });
 }
 
 void EmbreeDevice::check(const std::string& what) const {

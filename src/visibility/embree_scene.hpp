@@ -36,6 +36,8 @@ class EmbreeDevice {
 
   RTCDevice get() const { return device_.get(); }
   EmbreeScenePointer new_scene(RTCSceneFlags flags) const;
+  /// Builds the scene's tree, on as many threads as `trees` allows.
+  void commit(RTCScene scene) const;
   /// Throws Error if any call since the last check has failed; `what` is what trees were built over: "12 facets".
   void check(const std::string& what) const;
   /// Held by trees and the geometry in them, counted as they were allocated.
@@ -43,6 +45,7 @@ class EmbreeDevice {
 
  private:
   std::atomic<std::int64_t> held_{0};
+  Trees trees_;
   std::unique_ptr<RTCDeviceTy, ReleaseEmbree> device_;  // after held_, which it counts down when it goes
 };
 

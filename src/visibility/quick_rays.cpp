@@ -47,7 +47,7 @@ QuickRays::QuickRays(const FacetScene& scene) : impl_(std::make_unique<Impl>(sce
     triangles.set(f, {t[0] - i.origin, t[1] - i.origin, t[2] - i.origin}, scene.area[f] > 0.0f);
   });
   triangles.attach(i.embree.get(), 0, RTC_BUILD_QUALITY_LOW);
-  rtcCommitScene(i.embree.get());
+  i.device.commit(i.embree.get());
   i.device.check(std::to_string(scene.size()) + " facets");
 }
 

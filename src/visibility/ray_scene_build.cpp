@@ -239,7 +239,7 @@ void RayScene::Impl::build() {
       if (n < all) plant.facet_of.push_back(facet);
     });
     triangles.attach(plant.embree.get(), 0);
-    rtcCommitScene(plant.embree.get());
+    device.commit(plant.embree.get());
   }
   embree = device.new_scene(flags);
   for (unsigned i = 0; i < instances.size(); ++i) {
@@ -254,7 +254,7 @@ void RayScene::Impl::build() {
     for (std::size_t p = 0; p < facet_of.size(); ++p) triangles.set(p, primitive_corners(p));
     triangles.attach(embree.get(), static_cast<unsigned>(instances.size()));
   }
-  rtcCommitScene(embree.get());
+  device.commit(embree.get());
   device.check(std::to_string(facet_of.size()) + " facets and " + std::to_string(instances.size()) + " copies");
 }
 

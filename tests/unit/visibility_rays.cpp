@@ -5,6 +5,8 @@
 #include <limits>
 #include <vector>
 
+#include <tbb/global_control.h>
+
 #include <sunfleck/core/error.hpp>
 #include <sunfleck/core/sampling.hpp>
 #include <sunfleck/visibility/rays.hpp>
@@ -73,6 +75,14 @@ TEST_CASE("a ray meets the front of what it sees counter-clockwise") {
   CHECK(rays.occluded({0.2, 0.3, 2}, {0, 0, -1}));
   CHECK_FALSE(rays.occluded({0.8, 0.8, 2}, {0, 0, -1}));
   CHECK(rays.bytes() > 0);
+}
+
+TEST_CASE("a tree that one thread has built leaves the others to the rest of the program") {
+  const auto threads = [] { return tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism); };
+  const std::size_t before = threads();
+  const auto scene = facets({flat(0)});
+  const RayScene rays(scene);
+  CHECK(threads() == before);
 }
 
 TEST_CASE("rays do not meet the facet on which they start, nor facets without area") {
