@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
 #include <sunfleck/core/error.hpp>
@@ -17,8 +18,7 @@ namespace {
 
 constexpr int octahedron = 96;  // cells along an edge of the table of directions
 constexpr std::size_t segments_wanted = 288;
-constexpr std::size_t row_ranges = 4;                             // parts in which rows are made, one thread each
-constexpr std::uint32_t line_begins = 1u << 31, dark = 1u << 30;  // the latter: the hit is enclosed
+constexpr std::size_t row_ranges = 4;  // parts in which rows are made, one thread each
 
 /// What one direction found: sides along lines from low to high (the upward side; its other bit is the downward one), the first of each
 /// line marked; and which sides look out through which field.
@@ -28,6 +28,12 @@ struct Traced {
   std::vector<std::pair<std::uint32_t, std::array<float, 3>>> points;
   std::vector<std::array<float, 6>> segments;
   std::uint64_t fragments = 0;
+};
+
+/// How often lines have met what, over all directions.
+struct Hits {
+  std::vector<std::uint32_t> lines;        ///< [elements] where not enclosed
+  std::vector<std::uint32_t> all, inside;  ///< [cells] all, and enclosed ones; empty where nothing is interior
 };
 
 /// Octahedral map of the sphere onto the square [-1, 1]^2 (Meyer et al. 2010, doi:10.1111/j.1467-8659.2010.01737.x).
@@ -109,10 +115,10 @@ LineOperator::Rows make_rows(std::size_t rows, const Visit& visit) {
 }  // namespace
 
 LineOperator::LineOperator(const Elements& elements, const std::vector<std::uint8_t>& interior, const OperatorDensity& density,
-                           std::uint64_t seed, Progress& progress, Seen seen)
+                           std::uint64_t seed, Progress& progress, Seen seen, LineVisitor* visitor)
     : directions_(density.directions), pixels_(density.field_pixels), seen_(seen) {
   if (2 * elements.surface.cells() >= dark) throw Error("an original of more than 2^29 cells");
-  trace(elements, interior, density, seed, progress);
+  trace(elements, interior, density, seed, progress, visitor);
   tabulate_directions();
   stand_in.resize(elements.size());
   std::uint32_t last = 0;
@@ -130,7 +136,7 @@ LineOperator::LineOperator(const Elements& elements, const std::vector<std::uint
 }
 
 void LineOperator::trace(const Elements& elements, const std::vector<std::uint8_t>& interior, const OperatorDensity& density,
-                         std::uint64_t seed, Progress& progress) {
+                         std::uint64_t seed, Progress& progress, LineVisitor* visitor) {
   const Surface& surface = elements.surface;
   const auto side_of = [&](std::uint32_t cell_side) { return 2 * elements.element_of_cell[cell_side >> 1] + (cell_side & 1u); };
   const double pitch = std::sqrt(0.5 * elements.organ_area / density.lines_per_organ);
@@ -140,9 +146,13 @@ void LineOperator::trace(const Elements& elements, const std::vector<std::uint8_
   projections_.resize(directions_);
   std::vector<Traced> traced(directions_);
   std::vector<std::uint32_t> counts(field_lines.size(), 0);
-  tbb::parallel_for(std::uint32_t{0}, directions_, [&](std::uint32_t d) {
-    if (progress.cancelled()) return;
-    thread_local LineBundle bundle;
+  tbb::enumerable_thread_specific<Hits> hits_of_thread([&] {
+    const std::size_t cells = interior.empty() ? 0 : surface.cells();
+    return Hits{std::vector<std::uint32_t>(elements.size(), 0), std::vector<std::uint32_t>(cells, 0), std::vector<std::uint32_t>(cells, 0)};
+  });
+  tbb::enumerable_thread_specific<LineBundle> bundles;
+  const auto trace_direction = [&](std::uint32_t d) {
+    LineBundle& bundle = bundles.local();
     auto& p = projections_[d];
     p = project_set_member(surface, hemisphere_direction(d, directions_, seed), d, pitch, seed);
     trace_lines(surface, p, bundle);
@@ -198,28 +208,54 @@ void LineOperator::trace(const Elements& elements, const std::vector<std::uint8_
       }
     for (std::size_t local = 0; local < chosen.size(); ++local)
       for (const auto& point : chosen[local]) t.points.emplace_back(static_cast<std::uint32_t>(first_field + local), point);
-  });
+    Hits& hits = hits_of_thread.local();
+    for (const auto entry : t.along) {
+      const std::uint32_t cell = (entry & ~(line_begins | dark)) >> 1;
+      if (!interior.empty()) ++hits.all[cell];
+      if (entry & dark)
+        ++hits.inside[cell];
+      else
+        ++hits.lines[elements.element_of_cell[cell]];
+    }
+  };
+  if (visitor)
+    tbb::parallel_for(
+        std::size_t{0}, LineVisitor::streams,
+        [&](std::size_t stream) {
+          for (auto d = static_cast<std::uint32_t>(stream); d < directions_ && !progress.cancelled(); d += LineVisitor::streams) {
+            trace_direction(d);
+            visitor->lines(stream, traced[d].along);
+            traced[d].along = {};
+          }
+        },
+        tbb::simple_partitioner());
+  else
+    tbb::parallel_for(std::uint32_t{0}, directions_, [&](std::uint32_t d) {
+      if (!progress.cancelled()) trace_direction(d);
+    });
+  bundles.clear();
   progress.check();
   const std::size_t sides = 2 * elements.size();
-  lines.assign(elements.size(), 0);
-  std::vector<std::uint32_t> hits(interior.empty() ? 0 : surface.cells(), 0), inside_hits(hits);
+  Hits hits = hits_of_thread.combine([](Hits a, const Hits& b) {
+    const auto add = [](std::vector<std::uint32_t>& to, const std::vector<std::uint32_t>& from) {
+      for (std::size_t i = 0; i < to.size(); ++i) to[i] += from[i];
+    };
+    add(a.lines, b.lines);
+    add(a.all, b.all);
+    add(a.inside, b.inside);
+    return a;
+  });
+  hits_of_thread.clear();
+  lines = std::move(hits.lines);
   for (const auto& t : traced) {
     fragments += t.fragments;
     segments.insert(segments.end(), t.segments.begin(), t.segments.end());
-    for (const auto entry : t.along) {
-      const std::uint32_t cell = (entry & ~(line_begins | dark)) >> 1;
-      if (!interior.empty()) ++hits[cell];
-      if (entry & dark)
-        ++inside_hits[cell];
-      else
-        ++lines[elements.element_of_cell[cell]];
-    }
   }
   open_area = elements.area;
-  if (std::any_of(inside_hits.begin(), inside_hits.end(), [](std::uint32_t n) { return n > 0; })) {
+  if (std::any_of(hits.inside.begin(), hits.inside.end(), [](std::uint32_t n) { return n > 0; })) {
     enclosed.resize(surface.cells());
     for (std::size_t c = 0; c < enclosed.size(); ++c) {
-      if (hits[c] > 0) enclosed[c] = static_cast<float>(inside_hits[c]) / static_cast<float>(hits[c]);
+      if (hits.all[c] > 0) enclosed[c] = static_cast<float>(hits.inside[c]) / static_cast<float>(hits.all[c]);
       open_area[elements.element_of_cell[c]] -= enclosed[c] * surface.cell_area[elements.row_of_cell[c]];
     }
     for (auto& a : open_area) a = std::max(a, 0.0f);
@@ -240,11 +276,10 @@ void LineOperator::trace(const Elements& elements, const std::vector<std::uint8_
     t.out = {};
     t.points = {};
   }
+  if (visitor) return;
   inside = make_rows(sides, [&](auto&& call) {
     for (const auto& t : traced)
-      for (std::size_t k = 1; k < t.along.size(); ++k) {
-        if ((t.along[k] & line_begins) || ((t.along[k] | t.along[k - 1]) & dark)) continue;
-        const std::uint32_t below = t.along[k - 1] & ~line_begins, above = t.along[k] ^ 1u;
+      each_meeting(t.along, [&](std::uint32_t below, std::uint32_t above) {
         if (seen_ == Seen::cells) {
           call(side_of(below), above);
           call(side_of(above), below);
@@ -252,7 +287,7 @@ void LineOperator::trace(const Elements& elements, const std::vector<std::uint8_
           call(side_of(below), side_of(above));
           call(side_of(above), side_of(below));
         }
-      }
+      });
   });
 }
 

@@ -12,6 +12,17 @@
 
 namespace sunfleck {
 
+/// Is shown the lines of an operator as they are traced, for those who need what sides see of each other once only. Directions belong to
+/// a few streams; those of one stream come in their order, streams from several threads at once: who adds up stream by stream gets the same
+/// bits with any number of threads.
+class LineVisitor {
+ public:
+  static constexpr std::size_t streams = 8;
+  virtual ~LineVisitor() = default;
+  /// `along`: for LineOperator::each_meeting().
+  virtual void lines(std::size_t stream, const std::vector<std::uint32_t>& along) = 0;
+};
+
 /// Element sides: 2 * element + (0 front, 1 back). Fields: (2 * direction + sense) * K^2 + pixel; sense 0 looks along the direction, 1
 /// against it; the pixel is one of K x K parts of the direction's grid.
 ///
@@ -26,8 +37,16 @@ class LineOperator {
   /// `seed` chooses the turns and shifts of the grids.
   /// `interior`: of interior_of_cells(). Hits that it encloses, as the base of a petiole in a stem, are in the dark and seen by nobody who
   /// matters: they count in `enclosed` and nowhere else.
+  /// With a visitor `inside` stays empty: the lines are shown to it and not kept.
   LineOperator(const Elements& elements, const std::vector<std::uint8_t>& interior, const OperatorDensity& density, std::uint64_t seed,
-               Progress& progress, Seen seen = Seen::elements);
+               Progress& progress, Seen seen = Seen::elements, LineVisitor* visitor = nullptr);
+
+  /// Calls meet(below, above) for sides of cells that see each other along the lines of one direction.
+  template <class Meet>
+  static void each_meeting(const std::vector<std::uint32_t>& along, Meet&& meet) {
+    for (std::size_t k = 1; k < along.size(); ++k)
+      if (!(along[k] & line_begins) && !((along[k] | along[k - 1]) & dark)) meet(along[k - 1] & ~line_begins, along[k] ^ 1u);
+  }
 
   Seen seen() const { return seen_; }
 
@@ -65,8 +84,10 @@ class LineOperator {
   std::uint64_t fragments = 0;
 
  private:
+  static constexpr std::uint32_t line_begins = 1u << 31, dark = 1u << 30;  // marks of a hit on a line; the latter: it is enclosed
+
   void trace(const Elements& elements, const std::vector<std::uint8_t>& interior, const OperatorDensity& density, std::uint64_t seed,
-             Progress& progress);
+             Progress& progress, LineVisitor* visitor);
   void tabulate_directions();
 
   std::uint32_t directions_ = 0, pixels_ = 0;

@@ -13,6 +13,7 @@
 
 #include "instantiation/batches.hpp"
 #include "instantiation/closed_light.hpp"
+#include "instantiation/inside_gather.hpp"
 
 namespace sunfleck {
 
@@ -31,9 +32,12 @@ class Opening {
     const auto ground_e = s_.ground_irradiance(&total_, true);  // before the fields change no more
     std::uint32_t fine_of = no_parent;
     std::unique_ptr<LineOperator> fine;
-    std::vector<std::uint32_t> opened;
+    std::vector<std::uint32_t> opened, opened_of_original(s_.members.originals.size(), 0);
     for (std::uint32_t m = 0; m < s_.members.size(); ++m)
-      if (s_.has_rows(m)) opened.push_back(m);
+      if (s_.has_rows(m)) {
+        opened.push_back(m);
+        ++opened_of_original[s_.members.found.members[m].original];
+      }
     const auto stood_for = copies_stood_for();
     std::size_t first = 0, next_own = 0;
     while (first < opened.size() || next_own < stood_for.size()) {
@@ -56,14 +60,21 @@ class Opening {
       for (std::size_t begin = 0; begin < batches.size();) {
         std::size_t end = begin;
         while (end < batches.size() && batches[end].original == batches[begin].original) ++end;
+        std::vector<std::vector<Balance>> partial(end - begin);
         if (fine_of != batches[begin].original) {
           fine.reset();
           fine_of = batches[begin].original;
+          if (end - begin == 1 && opened_of_original[fine_of] == batches[begin].members.size()) {
+            open_once(batches[begin], rows, partial[0]);
+            add_balance(batches[begin], partial[0]);
+            begin = end;
+            fine_of = no_parent;
+            continue;
+          }
           fine = std::make_unique<LineOperator>(s_.members.originals[fine_of].elements, s_.members.originals[fine_of].interior,
                                                 s_.density.fine, mix(s_.seed, fine_stream, fine_of), s_.progress, seen());
           if (fine->bytes() > fine_bytes_) fine_bytes_ = fine->bytes();
         }
-        std::vector<std::vector<Balance>> partial(end - begin);
         const auto runs = runs_of_members(batches, begin, end);
         tbb::parallel_for(std::size_t{0}, runs.size(), [&](std::size_t r) {
           if (s_.progress.cancelled()) return;
@@ -194,6 +205,32 @@ class Opening {
     return out;
   }
 
+  /// Opens the only batch of an original: the lines of the last gather are followed as they are traced, and never kept.
+  void open_once(const Batch& b, std::vector<Rows>& rows, std::vector<Balance>& balance) {
+    with_width(b.width, [&](auto constant) {
+      constexpr int width = decltype(constant)::value;
+      const auto& original = s_.members.originals[b.original];
+      const LaneField<width> radiosity = solved<width>(b, stored_ends(s_, b));
+      const LaneField<width> cells = seen() == LineOperator::Seen::cells ? on_cells<width>(b, radiosity) : LaneField<width>{};
+      InsideGather<width> gather(original.elements, cells.empty() ? radiosity : cells, seen());
+      const LineOperator fine(original.elements, original.interior, s_.density.fine, mix(s_.seed, fine_stream, b.original), s_.progress,
+                              seen(), &gather);
+      fine_bytes_ = std::max(fine_bytes_, fine.bytes() + gather.bytes());
+      std::vector<std::vector<RayEnd>> ends;
+      std::vector<const RayEnd*> fine_ends;
+      const std::size_t pixels = std::size_t{fine.pixels()} * fine.pixels();
+      for (const auto m : b.members) {
+        ends.emplace_back(fine.points.size());
+        auto* found = ends.back().data();
+        tbb::parallel_for(std::size_t{0}, fine.fields() / pixels,
+                          [&](std::size_t sense) { s_.look_from(m, fine, sense * pixels, (sense + 1) * pixels, found); });
+        fine_ends.push_back(found);
+      }
+      s_.progress.check();
+      finish<width>(b, fine, fine_ends, radiosity, gather.mean(fine), rows, balance);
+    });
+  }
+
   /// `coarse_ends` are of the original's own operator, `fine_ends` of the one that light is gathered along; they may be the same.
   void open(const Batch& b, const std::vector<const RayEnd*>& coarse_ends, const LineOperator& fine,
             const std::vector<const RayEnd*>& fine_ends, std::vector<Rows>& rows, std::vector<Balance>& balance) {
@@ -203,24 +240,35 @@ class Opening {
   template <int width>
   void open_lanes(const Batch& b, const std::vector<const RayEnd*>& coarse_ends, const LineOperator& fine,
                   const std::vector<const RayEnd*>& fine_ends, std::vector<Rows>& rows, std::vector<Balance>& balance) {
+    const LaneField<width> radiosity = solved<width>(b, coarse_ends);
+    const LaneField<width> cells = fine.seen() == LineOperator::Seen::cells ? on_cells<width>(b, radiosity) : LaneField<width>{};
+    LaneField<width> inside(radiosity.size(), Lanes<width>{});
+    add_inside<width>(fine, cells.empty() ? radiosity : cells, inside);
+    finish<width>(b, fine, fine_ends, radiosity, std::move(inside), rows, balance);
+  }
+
+  /// Radiosity of the elements of a batch in the final light.
+  template <int width>
+  LaneField<width> solved(const Batch& b, const std::vector<const RayEnd*>& coarse_ends) const {
     const auto& original = s_.members.originals[b.original];
-    const auto& e = original.elements;
-    const std::size_t sides = 2 * e.size();
-    LaneField<width> field, source(sides, Lanes<width>{}), radiosity;
+    LaneField<width> field, source(2 * original.elements.size(), Lanes<width>{}), radiosity;
     incoming<width>(s_, b, *original.coarse, coarse_ends, &total_, true, field);
     add_outside<width>(*original.coarse, field, source);
     add_sun<width>(s_, b, source);
-    solve_inside<width>(*original.coarse, e.material, optics_of<width>(s_, b), source, static_cast<float>(s_.density.inner_tolerance),
-                        most_sweeps, radiosity);
+    solve_inside<width>(*original.coarse, original.elements.material, optics_of<width>(s_, b), source,
+                        static_cast<float>(s_.density.inner_tolerance), most_sweeps, radiosity);
+    return radiosity;
+  }
 
-    // the sky's light first, for the balance
-    LaneField<width> sky(sides, Lanes<width>{}), scattered(sides, Lanes<width>{}), cells;
-    if (fine.seen() == LineOperator::Seen::cells) on_cells<width>(b, radiosity, cells);
+  /// Rows of a batch, from its radiosity and what elements gather of it inside.
+  template <int width>
+  void finish(const Batch& b, const LineOperator& fine, const std::vector<const RayEnd*>& fine_ends, const LaneField<width>& radiosity,
+              LaneField<width> scattered, std::vector<Rows>& rows, std::vector<Balance>& balance) {
+    LaneField<width> field, sky(radiosity.size(), Lanes<width>{});  // the sky's light apart, for the balance
     incoming<width>(s_, b, fine, fine_ends, nullptr, true, field);
     add_outside<width>(fine, field, sky);
     incoming<width>(s_, b, fine, fine_ends, &total_, false, field);
     add_outside<width>(fine, field, scattered);
-    add_inside<width>(fine, cells.empty() ? radiosity : cells, scattered);
     balance.assign(b.columns, Balance{});
     escaped<width>(b, fine, fine_ends, radiosity, balance);
     for (std::size_t j = 0; j < b.members.size(); ++j)
@@ -232,10 +280,10 @@ class Opening {
 
   /// Radiosity of cells: their element's, but for the sun's light, once reflected, which is the cell's own.
   template <int width>
-  void on_cells(const Batch& b, const LaneField<width>& radiosity, LaneField<width>& out) const {
+  LaneField<width> on_cells(const Batch& b, const LaneField<width>& radiosity) const {
     const auto& e = s_.members.originals[b.original].elements;
     const auto& s = e.surface;
-    out.resize(2 * s.cells());
+    LaneField<width> out(2 * s.cells());
     for (std::size_t cell = 0; cell < s.cells(); ++cell)
       for (std::size_t side = 0; side < 2; ++side) out[2 * cell + side] = radiosity[2 * std::size_t{e.element_of_cell[cell]} + side];
     std::vector<float> mean;
@@ -265,6 +313,7 @@ class Opening {
           }
         }
       }
+    return out;
   }
 
   /// Radiosity that ends in the sky: sum of area * B * (lines of the side that do) / W.
