@@ -10,6 +10,8 @@
 #include <sunfleck/radiosity/elements.hpp>
 #include <sunfleck/visibility/projection.hpp>
 
+#include "instantiation/link_rows.hpp"
+
 namespace sunfleck {
 
 /// Is shown the lines of an operator as they are traced, for those who need what sides see of each other once only. Directions belong to
@@ -62,15 +64,11 @@ class LineOperator {
   std::uint32_t field_of(std::size_t sense, const Vec3& p) const;
 
   std::size_t bytes() const;
+  /// The most that was held while it was made, itself included [bytes].
+  std::size_t built_with() const { return built_with_; }
 
-  struct Rows {
-    static constexpr std::size_t padding = 16;  ///< entries beyond the last, so that loops may look ahead
-    std::vector<std::uint64_t> start;           ///< [sides + 1]
-    std::vector<std::uint32_t> column;          ///< side (of an element or a cell) or field
-    std::vector<std::uint8_t> count;            ///< lines
-  };
-  Rows inside;                       ///< n_ij
-  Rows outside;                      ///< n_if
+  LinkRows inside;                   ///< n_ij: columns are sides of elements or of cells
+  LinkRows outside;                  ///< n_if: columns are fields
   std::vector<std::uint32_t> lines;  ///< [elements] W_i
   std::vector<float> enclosed;       ///< [cells] fraction that is enclosed; empty if nothing is
   std::vector<float> open_area;      ///< [elements] one-sided, of what is not enclosed [m^2]
@@ -94,6 +92,7 @@ class LineOperator {
   Seen seen_ = Seen::elements;
   std::vector<Projection> projections_;
   std::vector<std::uint16_t> nearest_;  ///< sense by octahedral map
+  std::size_t built_with_ = 0;
 };
 
 }  // namespace sunfleck

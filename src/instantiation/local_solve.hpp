@@ -19,7 +19,7 @@ struct LaneOptics {
 
 /// out += share * sum over a row of count * x[column].
 template <int width>
-inline void add_row(const LineOperator::Rows& rows, std::size_t row, float share, const Lanes<width>* x, Lanes<width>& out) {
+inline void add_row(const LinkRows& rows, std::size_t row, float share, const Lanes<width>* x, Lanes<width>& out) {
   using Vector = typename Lanes<width>::Vector;
   Vector a = {}, b = {};
   const std::uint32_t* column = rows.column.data();

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include <sunfleck/core/memory.hpp>
 #include <sunfleck/visibility/surface.hpp>
 
 namespace sunfleck {
@@ -57,6 +58,8 @@ struct LineBundle {
   std::vector<float> depth;  ///< along the line, same order; times depth_to_length = distance [m]
   double depth_to_length = 1.0;
   std::vector<Fragment> found, sorted;  ///< working space
+
+  std::size_t bytes() const { return bytes_of(start) + bytes_of(side) + bytes_of(depth) + bytes_of(found) + bytes_of(sorted); }
 };
 
 /// Traces all lines. Coincident fragments (closer than the surface's depth tolerance) are ordered so that, for facets i < j, j
