@@ -51,8 +51,9 @@ std::vector<double> sky_areas(const LineOperator& op, const RayEnd* ends) {
   for (std::size_t side = 0; side < out.size(); ++side) {
     if (op.lines[side / 2] == 0) continue;
     float lines = 0;
-    for (auto k = op.outside.start[side]; k < op.outside.start[side + 1]; ++k)
-      lines += static_cast<float>(op.outside.count[k]) * open[op.outside.column[k]];
+    op.outside.row(side, [&](const auto* column, const std::uint8_t* count, std::size_t n) {
+      for (std::size_t k = 0; k < n; ++k) lines += static_cast<float>(count[k]) * open[column[k]];
+    });
     out[side] = double{op.open_area[side / 2]} * lines / op.lines[side / 2];
   }
   return out;

@@ -95,7 +95,8 @@ void LineOperator::trace(const Elements& elements, const std::vector<std::uint8_
   projections_.resize(directions_);
   std::vector<Traced> traced(directions_);
   std::vector<std::uint32_t> counts(field_lines.size(), 0);
-  LinkRowsBuilder within(2 * elements.size()), out(2 * elements.size());
+  LinkRowsBuilder within(2 * elements.size(), 2 * (seen_ == Seen::cells ? surface.cells() : elements.size()));
+  LinkRowsBuilder out(2 * elements.size(), field_lines.size());
   tbb::enumerable_thread_specific<Tracer> tracers;
   // Links of a part of the directions are merged before the next are traced: all lines of a large plant take several times what their
   // links do.
@@ -158,7 +159,8 @@ void LineOperator::trace(const Elements& elements, const std::vector<std::uint8_
             const auto k = sense == 0 ? last - 1 : begin;
             const std::size_t local = sense * in_direction + pixel;
             if (up[k] & dark) continue;
-            leaving.push_back({(up[k] & ~line_begins) ^ static_cast<std::uint32_t>(sense), static_cast<std::uint32_t>(first_field + local)});
+            leaving.push_back(
+                {(up[k] & ~line_begins) ^ static_cast<std::uint32_t>(sense), static_cast<std::uint32_t>(first_field + local)});
             const auto seen = ++counts[first_field + local];
             auto slot = static_cast<std::size_t>(seen - 1);
             if (seen > density.points) slot = static_cast<std::size_t>(random.next() * seen);  // reservoir sampling (Vitter 1985)

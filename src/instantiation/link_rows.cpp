@@ -11,19 +11,43 @@ namespace sunfleck {
 
 namespace {
 
-constexpr std::size_t ranges_wanted = 16;  // each is one thread's work in a merge, and takes room for itself once more
-constexpr unsigned widest_range = 16;      // bits
+constexpr std::size_t parts_wanted = 16;  // each is one thread's work in a merge, and takes room for itself once more
+constexpr unsigned widest_part = 16;      // bits
 constexpr std::uint32_t most_count = 255;
 
-/// What a merge of one range works in.
-struct Room {
-  std::vector<std::uint64_t> place, cursor;
-  std::vector<std::uint32_t> raw, column;
+template <class Column>
+std::size_t bytes_of_parts(const std::vector<LinkPart<Column>>& parts) {
+  std::size_t total = 0;
+  for (const auto& p : parts) total += bytes_of(p.start) + bytes_of(p.column) + bytes_of(p.count);
+  return total;
+}
+
+template <class Column>
+std::size_t links_of(const std::vector<LinkPart<Column>>& parts) {
+  std::size_t total = 0;
+  for (const auto& p : parts) total += p.count.size();
+  return total;
+}
+
+unsigned shift_for(std::size_t rows) {
+  unsigned shift = 0;
+  while (shift < widest_part && (rows >> shift) >= parts_wanted) ++shift;
+  return shift;
+}
+
+}  // namespace
+
+/// What a merge of one part works in.
+template <class Column>
+struct MergeRoom {
+  std::vector<std::uint32_t> place, cursor, start;
+  std::vector<Column> raw, column;
   std::vector<std::uint8_t> count;
 
-  std::size_t bytes() const { return bytes_of(place) + bytes_of(cursor) + bytes_of(raw) + bytes_of(column) + bytes_of(count); }
-
-  void add(std::uint32_t c, std::uint32_t n) {
+  std::size_t bytes() const {
+    return bytes_of(place) + bytes_of(cursor) + bytes_of(start) + bytes_of(raw) + bytes_of(column) + bytes_of(count);
+  }
+  void add(Column c, std::uint32_t n) {
     for (; n > 0; n -= std::min(n, most_count)) {
       column.push_back(c);
       count.push_back(static_cast<std::uint8_t>(std::min(n, most_count)));
@@ -31,28 +55,34 @@ struct Room {
   }
 };
 
-}  // namespace
-
+std::size_t LinkRows::size() const {
+  return links_of(narrow) + links_of(wide);
+}
 std::size_t LinkRows::bytes() const {
-  return bytes_of(start) + bytes_of(column) + bytes_of(count);
+  return bytes_of_parts(narrow) + bytes_of_parts(wide);
 }
 
-LinkRowsBuilder::LinkRowsBuilder(std::size_t rows) : rows_(rows), length_(rows, 0) {
-  while (shift_ < widest_range && (rows >> shift_) >= ranges_wanted) ++shift_;
-  ranges_.resize((rows >> shift_) + 1);
+template <class Column>
+LinkParts<Column>::LinkParts(std::size_t rows, unsigned shift) : shift_(shift) {
+  for (std::size_t low = 0; low < rows; low += std::size_t{1} << shift) {
+    parts_.emplace_back();
+    parts_.back().start.assign(std::min(rows - low, std::size_t{1} << shift) + 1, 0);
+    parts_.back().column.assign(LinkRows::padding, 0);
+  }
 }
 
-void LinkRowsBuilder::merge() {
-  tbb::enumerable_thread_specific<Room> rooms;
-  tbb::parallel_for(std::size_t{0}, ranges_.size(), [&](std::size_t r) {
-    const std::size_t low = r << shift_, high = std::min(rows_, (r + 1) << shift_);
-    if (low >= high) return;
-    Room& room = rooms.local();
-    room.place.assign(high - low + 1, 0);
+template <class Column>
+void LinkParts<Column>::merge() {
+  tbb::enumerable_thread_specific<MergeRoom<Column>> rooms;
+  tbb::parallel_for(std::size_t{0}, parts_.size(), [&](std::size_t r) {
+    auto& kept = parts_[r];
+    const std::size_t rows = kept.start.size() - 1;
+    auto& room = rooms.local();
+    room.place.assign(rows + 1, 0);
     for (const auto& list : lists_)
       if (!list.start.empty())
         for (auto k = list.start[r]; k < list.start[r + 1]; ++k) ++room.place[list.row[k] + 1];
-    for (std::size_t i = 0; i < high - low; ++i) room.place[i + 1] += room.place[i];
+    for (std::size_t i = 0; i < rows; ++i) room.place[i + 1] += room.place[i];
     if (room.place.back() == 0) return;
     room.raw.resize(room.place.back());
     room.cursor = room.place;
@@ -61,50 +91,51 @@ void LinkRowsBuilder::merge() {
         for (auto k = list.start[r]; k < list.start[r + 1]; ++k) room.raw[room.cursor[list.row[k]]++] = list.column[k];
     room.column.clear();
     room.count.clear();
-    Range& kept = ranges_[r];
-    std::size_t old = 0;  // of `kept`
-    for (std::size_t i = 0; i < high - low; ++i) {
-      std::uint32_t *next = room.raw.data() + room.place[i], *const end = room.raw.data() + room.place[i + 1];
+    room.start.assign(1, 0);
+    for (std::size_t i = 0; i < rows; ++i) {
+      Column *next = room.raw.data() + room.place[i], *const end = room.raw.data() + room.place[i + 1];
       std::sort(next, end);
-      const std::size_t old_end = old + length_[low + i], before = room.column.size();
+      std::size_t old = kept.start[i];
+      const std::size_t old_end = kept.start[i + 1];
       while (old < old_end || next < end) {
-        const std::uint32_t column = next == end ? kept.column[old] : old == old_end ? *next : std::min(*next, kept.column[old]);
+        const Column column = next == end ? kept.column[old] : old == old_end ? *next : std::min(*next, kept.column[old]);
         std::uint32_t n = 0;
         for (; old < old_end && kept.column[old] == column; ++old) n += kept.count[old];
         for (; next < end && *next == column; ++next) ++n;
         room.add(column, n);
       }
-      length_[low + i] = static_cast<std::uint32_t>(room.column.size() - before);
+      room.start.push_back(static_cast<std::uint32_t>(room.column.size()));
     }
-    kept = {};
+    room.column.insert(room.column.end(), LinkRows::padding, 0);
+    kept.column = {};
+    kept.count = {};
     kept.column.assign(room.column.begin(), room.column.end());
     kept.count.assign(room.count.begin(), room.count.end());
+    std::copy(room.start.begin(), room.start.end(), kept.start.begin());
   });
-  std::size_t held = bytes_of(length_);
+  std::size_t held = bytes_of_parts(parts_);
   for (const auto& room : rooms) held += room.bytes();
-  for (const auto& range : ranges_) held += bytes_of(range.column) + bytes_of(range.count);
   for (const auto& list : lists_) held += bytes_of(list.start) + bytes_of(list.row) + bytes_of(list.column);
   peak_ = std::max(peak_, held);
   lists_ = {};
 }
 
+template <class Column>
+std::vector<LinkPart<Column>> LinkParts<Column>::finish() {
+  return std::move(parts_);
+}
+
+template class LinkParts<std::uint16_t>;
+template class LinkParts<std::uint32_t>;
+
+LinkRowsBuilder::LinkRowsBuilder(std::size_t rows, std::size_t columns)
+    : is_narrow_(columns <= LinkRows::most_narrow),
+      shift_(shift_for(rows)),
+      narrow_(is_narrow_ ? rows : 0, shift_),
+      wide_(is_narrow_ ? 0 : rows, shift_) {}
+
 LinkRows LinkRowsBuilder::finish() {
-  LinkRows out;
-  out.start.assign(rows_ + 1, 0);
-  for (std::size_t i = 0; i < rows_; ++i) out.start[i + 1] = out.start[i] + length_[i];
-  length_ = {};
-  out.column.reserve(out.start.back() + LinkRows::padding);
-  for (auto& range : ranges_) {
-    out.column.insert(out.column.end(), range.column.begin(), range.column.end());
-    range.column = {};
-  }
-  out.column.insert(out.column.end(), LinkRows::padding, 0);
-  out.count.reserve(out.start.back());
-  for (auto& range : ranges_) {
-    out.count.insert(out.count.end(), range.count.begin(), range.count.end());
-    range.count = {};
-  }
-  return out;
+  return {shift_, narrow_.finish(), wide_.finish()};
 }
 
 }  // namespace sunfleck

@@ -20,21 +20,20 @@ struct LaneOptics {
 /// out += share * sum over a row of count * x[column].
 template <int width>
 inline void add_row(const LinkRows& rows, std::size_t row, float share, const Lanes<width>* x, Lanes<width>& out) {
-  using Vector = typename Lanes<width>::Vector;
-  Vector a = {}, b = {};
-  const std::uint32_t* column = rows.column.data();
-  const std::uint8_t* count = rows.count.data();
-  std::uint64_t k = rows.start[row];
-  const std::uint64_t end = rows.start[row + 1];
-  constexpr std::uint64_t ahead = 12;  // entries: what they point to comes from beyond the second cache, in no order
-  for (; k + 1 < end; k += 2) {
-    __builtin_prefetch(x + column[k + ahead]);
-    __builtin_prefetch(x + column[k + ahead + 1]);
-    a += static_cast<float>(count[k]) * x[column[k]].v;
-    b += static_cast<float>(count[k + 1]) * x[column[k + 1]].v;
-  }
-  if (k < end) a += static_cast<float>(count[k]) * x[column[k]].v;
-  out.v += share * (a + b);
+  rows.row(row, [&](const auto* column, const std::uint8_t* count, std::size_t n) {
+    using Vector = typename Lanes<width>::Vector;
+    Vector a = {}, b = {};
+    constexpr std::size_t ahead = 12;  // entries: what they point to comes from beyond the second cache, in no order
+    std::size_t k = 0;
+    for (; k + 1 < n; k += 2) {
+      __builtin_prefetch(x + column[k + ahead]);
+      __builtin_prefetch(x + column[k + ahead + 1]);
+      a += static_cast<float>(count[k]) * x[column[k]].v;
+      b += static_cast<float>(count[k + 1]) * x[column[k + 1]].v;
+    }
+    if (k < n) a += static_cast<float>(count[k]) * x[column[k]].v;
+    out.v += share * (a + b);
+  });
 }
 
 /// out_i = sum_f n_if field_f / W_i: what comes in from outside.
@@ -63,8 +62,9 @@ void outgoing(const LineOperator& op, const LaneField<width>& radiosity, LaneFie
   using Vector = typename Lanes<width>::Vector;
   field.assign(op.fields(), Lanes<width>{});
   for (std::size_t side = 0; side < radiosity.size(); ++side)
-    for (auto k = op.outside.start[side]; k < op.outside.start[side + 1]; ++k)
-      field[op.outside.column[k]].v += static_cast<float>(op.outside.count[k]) * radiosity[side].v;
+    op.outside.row(side, [&](const auto* column, const std::uint8_t* count, std::size_t n) {
+      for (std::size_t k = 0; k < n; ++k) field[column[k]].v += static_cast<float>(count[k]) * radiosity[side].v;
+    });
   const std::size_t pixels = std::size_t{op.pixels()} * op.pixels();
   for (std::size_t first = 0; first < op.fields(); first += pixels) {
     Vector sum = {};

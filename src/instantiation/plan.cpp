@@ -62,12 +62,14 @@ InstantiationPlan plan_instantiation(const Scene& scene, const PlacedScene& plac
   plan.tangled = members.tangled;
   const std::size_t columns = scene.states.size() * scene.band_count();
   const auto samples = [](const OperatorDensity& d) { return d.directions * d.lines_per_organ; };
-  const auto bytes_of_operator = [&](const LineOperator& few, const LineOperator& more, const OperatorDensity& d, double& links) {
+  const auto bytes_of_operator = [&](const LineOperator& few, const LineOperator& more, const OperatorDensity& d, std::size_t sides_seen,
+                                     double& links) {
     const double factor = samples(d) / samples(pilot);
-    links = extrapolated(few.inside.count.size(), more.inside.count.size(), factor);
-    const double exits = extrapolated(few.outside.count.size(), more.outside.count.size(), factor);
+    links = extrapolated(few.inside.size(), more.inside.size(), factor);
+    const double exits = extrapolated(few.outside.size(), more.outside.size(), factor);
     const double fields = 2.0 * d.directions * d.field_pixels * d.field_pixels;
-    return 5.0 * (links + exits) + 16.0 * 2.0 * static_cast<double>(more.lines.size()) + (8.0 + 12.0 * d.points) * fields;
+    return LinkRows::bytes_per_link(sides_seen) * links + LinkRows::bytes_per_link(static_cast<std::size_t>(fields)) * exits +
+           16.0 * static_cast<double>(more.lines.size()) + (8.0 + 12.0 * d.points) * fields;
   };
   double shared = 0, fine = 0, links = 0;
   for (const auto& o : members.originals) {
@@ -75,8 +77,9 @@ InstantiationPlan plan_instantiation(const Scene& scene, const PlacedScene& plac
     half.directions /= 2;
     const LineOperator few(o.elements, o.interior, half, settings.seed, progress);
     double coarse_links = 0, fine_links = 0;
-    shared += static_cast<double>(o.elements.bytes()) + bytes_of_operator(few, *o.coarse, density.coarse, coarse_links);
-    fine = std::max(fine, bytes_of_operator(few, *o.coarse, density.fine, fine_links));
+    shared +=
+        static_cast<double>(o.elements.bytes()) + bytes_of_operator(few, *o.coarse, density.coarse, 2 * o.elements.size(), coarse_links);
+    fine = std::max(fine, bytes_of_operator(few, *o.coarse, density.fine, 2 * o.elements.surface.cells(), fine_links));
     links += coarse_links;
     plan.elements += o.elements.size();
   }

@@ -25,7 +25,7 @@ std::uint64_t report_originals(const SceneLight& s, SolveReport& report) {
   std::uint64_t elements = 0, links = 0, bytes = 0;
   for (const auto& o : s.members.originals) {
     elements += o.elements.size();
-    links += o.coarse->inside.count.size();
+    links += o.coarse->inside.size();
     bytes += o.coarse->bytes() + o.elements.bytes();
   }
   report.counts.emplace_back("originals", s.members.originals.size());

@@ -44,9 +44,9 @@ TEST_CASE("an operator's lines give the same light followed at once as kept in r
       const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
       InsideGather<2> gather(elements, light, seen);
       const LineOperator shown(elements, {}, density, 7, silent(), seen, &gather);
-      CHECK(shown.inside.column.empty());
+      CHECK(shown.inside.size() == 0);
       CHECK(shown.lines == kept.lines);
-      CHECK(shown.outside.column == kept.outside.column);
+      CHECK((shown.outside == kept.outside));
       CHECK(shown.points == kept.points);
       CHECK(shown.bytes() < kept.bytes());
       followed[threads > 1] = gather.mean(shown);
