@@ -61,10 +61,37 @@ class OrganAreas {
   std::vector<std::vector<double>> of_plant_;  ///< at scale 1
 };
 
-/// Systematic sampling of `wanted` members of a population, which `each(visit(member))` lists in the same order whenever it is called.
-/// Sizes are what probabilities are proportional to; members of at least the sampling step are certain.
+/// One place drawn from each of equal stretches [k, k + 1) of a line on which members lie end to end, none longer than a stretch, and no
+/// member twice: one that a border cuts keeps its probability a + b, as it is taken from the second stretch with b / (1 - a) if the first
+/// has not taken it, and never if it has (J.-C. Deville 1998, Une nouvelle methode de tirage a probabilites inegales, INSEE).
+/// Not steps of one length: in a stand of copies, steps of 3/5 of a copy would meet the same five organs in all of them.
+class Stretches {
+ public:
+  Stretches(std::size_t count, std::uint64_t seed) : count_(count), random_(seed), place_(random_.next()) {}
+
+  /// Is the next member drawn, which ends at `end`?
+  bool draws(double end) {
+    const double begin = end_;
+    end_ = end;
+    bool drawn = count_ > 0 && place_ >= begin && place_ < std::min(end, border_);
+    if (end <= border_ || border_ >= static_cast<double>(count_)) return drawn;
+    const double before = border_ - begin, after = std::min(end - border_, 1.0);
+    const bool here = !drawn && random_.next() * (1.0 - before) < after;
+    place_ = here ? begin : border_ + after + (1.0 - after) * random_.next();  // begin: behind all that follow
+    border_ += 1.0;
+    return drawn || here;
+  }
+
+ private:
+  std::size_t count_;
+  RandomStream random_;
+  double place_, border_ = 1.0, end_ = 0.0;
+};
+
+/// Sampling of `wanted` members of a population, which `each(visit(member))` lists in the same order whenever it is called. Sizes are what
+/// probabilities are proportional to; members of at least a stretch are certain.
 template <class Each>
-std::vector<ChosenOrgan> draw(Each&& each, std::uint32_t wanted, double offset) {
+std::vector<ChosenOrgan> draw(Each&& each, std::uint32_t wanted, std::uint64_t seed) {
   double rest = 0.0, share = 0.0;
   std::size_t count = 0;
   std::vector<ChosenOrgan> large;  // a heap of the `wanted` largest, the smallest of them first
@@ -96,7 +123,8 @@ std::vector<ChosenOrgan> draw(Each&& each, std::uint32_t wanted, double offset) 
 
   std::vector<ChosenOrgan> chosen;
   const double step = rest / static_cast<double>(std::max<std::size_t>(places, 1));
-  double passed = 0.0, next = offset * step, by_chance = share, drawn = 0.0;
+  Stretches stretches(places, seed);
+  double passed = 0.0, by_chance = share, drawn = 0.0;
   std::size_t sure = 0;
   each([&](ChosenOrgan c) {
     if (sure < large.size() && large[sure].organ == c.organ) {
@@ -107,13 +135,12 @@ std::vector<ChosenOrgan> draw(Each&& each, std::uint32_t wanted, double offset) 
       return;
     }
     passed += c.size;
-    if (places == 0 || passed <= next) return;
+    if (!stretches.draws(passed / step)) return;
     c.share /= c.size;
     c.size = step;  // were some of these drawn once more, all of them would have the same chance
     c.certain = false;
     drawn += c.share;
     chosen.push_back(c);
-    next += step;
   });
   for (auto& c : chosen)
     if (!c.certain) c.share *= by_chance / drawn;
@@ -137,7 +164,7 @@ std::vector<ChosenOrgan> choose_organs(const FacetRows& rows, const CertificateS
       [&](auto&& visit) {
         areas.visit([&](std::uint64_t organ, double area) { visit(ChosenOrgan{organ, area / total, area + 3.0 * mean, false}); });
       },
-      settings.organs, unit_interval(mix(certificate_seed(settings), 0)));
+      settings.organs, mix(certificate_seed(settings), 0));
 }
 
 std::vector<ChosenOrgan> choose_fewer(const std::vector<ChosenOrgan>& chosen, std::uint32_t wanted, const CertificateSettings& settings) {
@@ -145,7 +172,7 @@ std::vector<ChosenOrgan> choose_fewer(const std::vector<ChosenOrgan>& chosen, st
       [&](auto&& visit) {
         for (const auto& c : chosen) visit(c);
       },
-      wanted, unit_interval(mix(certificate_seed(settings), 1)));
+      wanted, mix(certificate_seed(settings), 1));
 }
 
 }  // namespace sunfleck

@@ -31,9 +31,9 @@ struct ChosenOrgan {
 
 /// Draws organs of plants with a probability proportional to their area plus three times the mean area: small organs weigh little but
 /// have the largest errors (on a coffee plant organs that make a tenth of the area hold nine tenths of the square error in NIR), and one
-/// drawn by its area alone would weigh as much as a large one. Systematic sampling in scene order, so that they spread over the scene;
-/// organs larger than the sampling step are taken for sure; all, if there are no more than settings.organs. Shares of those drawn are area
-/// over probability, scaled to the area that they stand for together. Rising rows; holds nothing of the size of the scene.
+/// drawn by its area alone would weigh as much as a large one. One from each of equal stretches in scene order, so that they spread over
+/// the scene; organs larger than a stretch are taken for sure; all, if there are no more than settings.organs. Shares of those drawn are
+/// area over probability, scaled to the area that they stand for together. Rising rows; holds nothing of the size of the scene.
 std::vector<ChosenOrgan> choose_organs(const FacetRows& rows, const CertificateSettings& settings);
 
 /// Path-traced light of one organ: means per area and the variances of these means, [s][b]. Irradiance is front + back.
