@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <string>
 
 #include <fmt/format.h>
@@ -16,10 +17,12 @@ namespace sunfleck {
 
 namespace {
 
-volatile std::sig_atomic_t stop_asked = 0;
+// Set by a handler on whichever thread the signal meets, read by all that work: a volatile sig_atomic_t would be a race between them.
+std::atomic<bool> stop_asked{false};
+static_assert(std::atomic<bool>::is_always_lock_free);
 
 extern "C" void ask_to_stop(int) {
-  stop_asked = 1;
+  stop_asked.store(true, std::memory_order_relaxed);
 }
 
 void on_signal(int signal) {
@@ -79,7 +82,7 @@ std::string time_left(double seconds, double done) {
 }
 
 bool TerminalProgress::cancelled() const {
-  return stop_asked != 0;
+  return stop_asked.load(std::memory_order_relaxed);
 }
 
 void TerminalProgress::clear_bar() {

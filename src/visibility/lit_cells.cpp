@@ -82,7 +82,7 @@ class LitCellsCounter {
     out_.lit.resize(all_.size());
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, all_.size(), 1 << 16), [&](const auto& range) {
       for (std::size_t i = range.begin(); i < range.end(); ++i)
-        out_.lit[i] = all_[i] ? static_cast<std::uint8_t>((510u * visible_[i] + all_[i]) / (2u * all_[i])) : 0;
+        out_.lit[i] = all_[i] ? static_cast<std::uint8_t>((510u * visible_[i] + all_[i]) / (2u * all_[i])) : std::uint8_t{0};
     });
     for (std::size_t i = 0; i < all_.size(); ++i) out_.fragments += all_[i];
   }
