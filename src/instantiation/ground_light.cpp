@@ -33,12 +33,12 @@ GroundView view_from_ground(const Scene& scene, const std::vector<Triangle>& gro
                             std::uint32_t rays, std::uint32_t sun_samples, std::uint64_t seed, Progress& progress) {
   GroundView out;
   const std::size_t facets = ground.size(), sides = 2 * facets;
-  bool both = scene.ground && scene.ground->mesh;
-  for (const auto* sky : lights.skies) both = both || sky->reaches_below_horizon();
+  out.backs = scene.ground && scene.ground->mesh;
+  for (const auto* sky : lights.skies) out.backs = out.backs || sky->reaches_below_horizon();
   out.rays = rays;
   out.area.resize(facets);
   out.seen.assign(sides, false);
-  out.ends.resize(sides * rays);
+  out.ends.resize((out.backs ? sides : facets) * rays);
   out.sky.assign(lights.skies.size(), std::vector<float>(sides, 0.0f));
   out.lit.assign(lights.suns.size(), std::vector<float>(sides, 0.0f));
   out.sunlit = out.lit;
@@ -46,7 +46,7 @@ GroundView view_from_ground(const Scene& scene, const std::vector<Triangle>& gro
   for (std::size_t f = 0; f < facets; ++f) {
     out.area[f] = static_cast<float>(glm::length(area_vector(ground[f])));
     out.seen[2 * f] = out.area[f] > 0;
-    out.seen[2 * f + 1] = both && out.area[f] > 0;
+    out.seen[2 * f + 1] = out.backs && out.area[f] > 0;
   }
   std::vector<std::vector<Vec3>> disc;
   for (const auto* sun : lights.suns) disc.push_back(sun_directions(*sun, std::max(sun_samples, 4u) * 8, mix(seed, 3)));
@@ -69,7 +69,7 @@ GroundView view_from_ground(const Scene& scene, const std::vector<Triangle>& gro
         for (std::uint32_t k = 0; k < rays; ++k) {
           const double r2 = sobol_owen(k, 2, key), angle = 2 * std::numbers::pi * sobol_owen(k, 3, key), r = std::sqrt(r2);
           const Vec3 d = glm::normalize(r * std::cos(angle) * u + r * std::sin(angle) * v + std::sqrt(1 - r2) * up);
-          auto& end = out.ends[side * rays + k];
+          auto& end = out.ends[out.first_end(side) + k];
           end = around.look_from_ground(point(k, 0), d);
           if (!end.is_sky()) continue;
           ++open;

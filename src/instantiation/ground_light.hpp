@@ -17,12 +17,14 @@ struct GroundView {
   std::uint32_t rays = 0;               ///< per side
   std::vector<float> area;              ///< [facets] one-sided [m^2]
   std::vector<bool> seen;               ///< [sides] rays were sent
-  std::vector<RayEnd> ends;             ///< [sides][rays]
+  bool backs = false;                   ///< some back may see something
+  std::vector<RayEnd> ends;             ///< [sides, or facets if no back sees anything][rays]
   std::vector<std::vector<float>> sky;  ///< per distinct sky: irradiance over the sky's horizontal irradiance [sides]
   std::vector<std::vector<float>>
       lit;  ///< per distinct sun: fraction of the facet that it reaches, times the cosine towards the side [sides]
   std::vector<std::vector<float>> sunlit;  ///< per distinct sun: fraction of the side that it reaches [sides]
   std::vector<float> sky_seen;             ///< [sides] fraction of rays that end in the sky or nowhere
+  std::size_t first_end(std::size_t side) const { return (backs ? side : side / 2) * rays; }
   std::size_t bytes() const;
 };
 

@@ -47,6 +47,11 @@ OriginalLight original_light(const Scene& scene, const Approximation& approximat
   out.facet_material = facets.optics;
   const double pitch = std::sqrt(0.5 * out.elements.organ_area / density.lines_per_organ);
   out.interior = interior_of_cells(out.elements, interior_sides(out.elements, pitch, seed, progress));
+  // no one asks for these any more
+  out.elements.tree = {};
+  out.elements.organ_of_row = {};
+  out.elements.first_cell = {};
+  out.elements.cells = {};
   return out;
 }
 

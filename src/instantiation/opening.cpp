@@ -55,18 +55,19 @@ class Opening {
         window.push_back(opened[first]);
         bytes += s_.members.original_facets(opened[first]) * 2 * sizeof(float) * (s_.columns + s_.states);
       }
-      std::vector<Rows> rows(placed_rows(window));
       auto batches = batches_of(s_, window);
       for (std::size_t begin = 0; begin < batches.size();) {
         std::size_t end = begin;
         while (end < batches.size() && batches[end].original == batches[begin].original) ++end;
         std::vector<std::vector<Balance>> partial(end - begin);
+        std::vector<Rows> rows(placed_rows(members_of(batches, begin, end)));
         if (fine_of != batches[begin].original) {
           fine.reset();
           fine_of = batches[begin].original;
           if (end - begin == 1 && opened_of_original[fine_of] == batches[begin].members.size()) {
             open_once(batches[begin], rows, partial[0]);
             add_balance(batches[begin], partial[0]);
+            send(rows);
             begin = end;
             fine_of = no_parent;
             continue;
@@ -93,9 +94,9 @@ class Opening {
         });
         s_.progress.check();
         for (std::size_t q = begin; q < end; ++q) add_balance(batches[q], partial[q - begin]);
+        send(rows);
         begin = end;
       }
-      send(rows);
     }
     report_.memory.emplace_back("fine", fine_bytes_);
     write_ground(ground_e);
@@ -117,6 +118,13 @@ class Opening {
       if (member.stands_in && member.copies.front() < s_.placed.copies.size() && (out.empty() || out.back() != member.copies.front()))
         out.push_back(member.copies.front());
     }
+    return out;
+  }
+
+  static std::vector<std::uint32_t> members_of(const std::vector<Batch>& batches, std::size_t begin, std::size_t end) {
+    std::vector<std::uint32_t> out;
+    for (const auto& [first, last] : runs_of_members(batches, begin, end))
+      out.insert(out.end(), batches[first].members.begin(), batches[first].members.end());
     return out;
   }
 
@@ -184,10 +192,10 @@ class Opening {
   }
 
   /// Space for the rows of the copies of the members, member by member, part by part.
-  std::vector<Rows> placed_rows(const std::vector<std::uint32_t>& window) {
+  std::vector<Rows> placed_rows(const std::vector<std::uint32_t>& members) {
     std::vector<Rows> out;
     row_of_member_.clear();
-    for (const auto m : window) {
+    for (const auto m : members) {
       row_of_member_.emplace(m, out.size());
       for (const auto c : s_.members.found.members[m].copies) {
         Rows r;

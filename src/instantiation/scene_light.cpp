@@ -72,7 +72,7 @@ void SceneLight::look_around(SolveReport& report) {
   ground = view_from_ground(scene, solved_ground, *around, lights,
                             std::max(8u, density.ground_rays / (members.ground_split * members.ground_split)), density.sun_samples,
                             mix(seed, ground_stream), progress);
-  report.counts.emplace_back("rays", ends.size() + ground.ends.size());
+  report.counts.emplace_back("rays", ends.size() + ground.seen.size() * ground.rays);
   report.memory.emplace_back("rays", around->bytes() + bytes_of(ends) + ground.bytes());
 }
 
@@ -157,7 +157,7 @@ std::vector<float> SceneLight::ground_irradiance(const Light* light, bool direct
       float* e = out.data() + side * columns;
       if (light) {
         for (std::uint32_t k = 0; k < ground.rays; ++k) {
-          const RayEnd& end = ground.ends[side * ground.rays + k];
+          const RayEnd& end = ground.ends[ground.first_end(side) + k];
           if (end.is_sky()) continue;
           const float* from = end.is_ground() ? light->ground.data() + (2 * std::size_t{end.facet()} + end.field) * columns
                                               : light->fields.data() + (field_start[end.target] + end.field) * columns;

@@ -108,6 +108,8 @@ Plant PlantBuilder::finish() {
   for (std::size_t i = plant_.structures.size(); i-- > 1;) count(plant_.structures[i].parent) += count(i);
   if (!plant_.shapes.empty()) plant_.structures[0].attributes[3].second = plant_.bounds().high.z;
   check_plant(plant_);
+  plant_.structures.shrink_to_fit();  // kept as long as the scene, next to others
+  plant_.shapes.shrink_to_fit();
   return std::move(plant_);
 }
 

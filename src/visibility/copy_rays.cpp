@@ -54,13 +54,13 @@ struct CopyRays::Impl {
 
   EmbreeScenePointer surface_scene(const Surface& s) {
     EmbreeScenePointer out = device.new_scene(RTC_SCENE_FLAG_COMPACT);
-    EmbreeTriangles triangles(device, s.size());
+    EmbreeMesh triangles;
     for (std::size_t t = 0; t < s.size(); ++t) {
       Triangle corners;
       for (std::size_t k = 0; k < 9; ++k) corners[k / 3][static_cast<int>(k % 3)] = s.corner[k][t];
-      triangles.set(t, corners, s.split[t] != 0);
+      triangles.add(corners, s.split[t] != 0);
     }
-    triangles.attach(out.get(), 0);
+    triangles.attach(device, out.get(), 0);
     device.commit(out.get());
     return out;
   }

@@ -58,6 +58,37 @@ void EmbreeTriangles::attach(RTCScene scene, unsigned id, RTCBuildQuality qualit
   rtcAttachGeometryByID(scene, geometry_.get(), id);
 }
 
+unsigned EmbreeMesh::vertex(const Vec3& p) {
+  constexpr std::size_t looked_back = 32;  // leaves and internodes have fewer corners
+  const float x = static_cast<float>(p.x), y = static_cast<float>(p.y), z = static_cast<float>(p.z);
+  const std::size_t n = vertices_.size() / 3, oldest = n > looked_back ? n - looked_back : 0;
+  for (std::size_t i = n; i-- > oldest;)
+    if (vertices_[3 * i] == x && vertices_[3 * i + 1] == y && vertices_[3 * i + 2] == z) return static_cast<unsigned>(i);
+  vertices_.insert(vertices_.end(), {x, y, z});
+  return static_cast<unsigned>(n);
+}
+
+void EmbreeMesh::add(const Triangle& corners, bool met) {
+  const unsigned first = vertex(corners[0]);
+  indices_.push_back(first);
+  for (std::size_t k = 1; k < 3; ++k) indices_.push_back(met ? vertex(corners[k]) : first);  // one corner three times: no area
+}
+
+void EmbreeMesh::attach(const EmbreeDevice& device, RTCScene scene, unsigned id) {
+  const std::unique_ptr<RTCGeometryTy, ReleaseEmbree> geometry(rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_TRIANGLE));
+  auto* vertices =
+      rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), vertices_.size() / 3);
+  auto* indices =
+      rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned), indices_.size() / 3);
+  if (!vertices || !indices) throw Error(fmt::format("not enough memory for the rays' geometry of {} facets", indices_.size() / 3));
+  std::copy(vertices_.begin(), vertices_.end(), static_cast<float*>(vertices));
+  std::copy(indices_.begin(), indices_.end(), static_cast<unsigned*>(indices));
+  vertices_ = {};
+  indices_ = {};
+  rtcCommitGeometry(geometry.get());
+  rtcAttachGeometryByID(scene, geometry.get(), id);
+}
+
 void attach_instance(const EmbreeDevice& device, RTCScene scene, unsigned id, RTCScene of, const Mat3& linear, const Vec3& move) {
   const std::unique_ptr<RTCGeometryTy, ReleaseEmbree> geometry(rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_INSTANCE));
   rtcSetGeometryInstancedScene(geometry.get(), of);

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include <sunfleck/core/vector.hpp>
 
@@ -69,6 +70,20 @@ class EmbreeTriangles {
   std::unique_ptr<RTCGeometryTy, ReleaseEmbree> geometry_;
   float* vertices_;
   unsigned* indices_;
+};
+
+/// The same for triangles that share corners with those shortly before them, as those of one mesh do: a third of the memory.
+class EmbreeMesh {
+ public:
+  void add(const Triangle& corners, bool met = true);
+  /// Hands everything over. Throws Error if memory does not suffice.
+  void attach(const EmbreeDevice& device, RTCScene scene, unsigned id);
+
+ private:
+  unsigned vertex(const Vec3& p);
+
+  std::vector<float> vertices_;
+  std::vector<unsigned> indices_;
 };
 
 /// A copy of a committed scene in another: p -> linear p + move.
