@@ -27,19 +27,6 @@ std::uint64_t result_bytes_per_facet(const Scene& scene) {
   return scene.states.size() * (3 * scene.band_count() + 2) * sizeof(float) + sizeof(float) + 3 * sizeof(double) + sizeof(std::uint32_t);
 }
 
-std::uint64_t mesh_bytes(const Scene& scene) {
-  std::vector<const Plant*> seen;
-  std::uint64_t bytes = 0;
-  for (const auto& entry : scene.plants) {
-    if (std::find(seen.begin(), seen.end(), entry.plant.get()) != seen.end()) continue;
-    seen.push_back(entry.plant.get());
-    for (const auto& mesh : entry.plant->meshes)
-      bytes += mesh.vertices.size() * sizeof(Vec3) + mesh.triangles.size() * sizeof(mesh.triangles[0]);
-    bytes += entry.plant->structures.size() * sizeof(Structure) + entry.plant->shapes.size() * sizeof(Shape);
-  }
-  return bytes;
-}
-
 bool transmits(const Scene& scene) {
   return std::any_of(scene.optics.begin(), scene.optics.end(), [](const Optics& o) {
     return std::any_of(o.transmittance.begin(), o.transmittance.end(), [](float t) { return t > 0.0f; });
@@ -245,7 +232,7 @@ Plan make_plan(const Scene& scene, const MethodChoice& choice, Progress& progres
   add_certificate(scene, choice.method, plan.items);
   const std::uint64_t facets = plan.counts.facets();
   const bool shares = choice.method == "instantiation";
-  plan.memory = {{"plants as read", mesh_bytes(scene)}};
+  plan.memory = {{"plants as read", held_bytes(scene)}};
   if (!shares) {
     plan.memory.emplace_back("facets of all copies", facets * expanded_bytes_per_facet());
     plan.memory.emplace_back("light on every facet", facets * solution_bytes_per_facet(scene));

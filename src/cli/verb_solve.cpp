@@ -153,7 +153,8 @@ double finest_in_memory(const MethodChoice& choice, const SolveReport& report) {
   };
   const double room = 0.6 * static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
   double held = 0;
-  for (const auto& [name, bytes] : report.memory) held += static_cast<double>(bytes);
+  for (const auto& [name, bytes] : report.memory)
+    if (name != "at_once") held += static_cast<double>(bytes);
   double fineness = finest_fineness;
   while (fineness > *choice.fineness && held * samples(fineness) / samples(*choice.fineness) > room) fineness -= 0.05;
   return std::max(fineness, *choice.fineness);

@@ -1,10 +1,14 @@
 // Lanes: which columns of which copies are worked on together, and what comes in to them.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <numeric>
 #include <type_traits>
 #include <utility>
 #include <vector>
+
+#include <tbb/task_arena.h>
 
 #include "instantiation/local_solve.hpp"
 #include "instantiation/scene_light.hpp"
@@ -21,6 +25,16 @@ struct Batch {
 
 /// Batches over the members given, members of one original together, in a fixed order.
 std::vector<Batch> batches_of(const SceneLight& s, const std::vector<std::uint32_t>& members);
+
+/// Bytes of the lanes of those batches that are worked on at the same time; `fields(batch)`: values in each of its lanes.
+template <class Fields>
+std::size_t lanes_at_once(const std::vector<Batch>& batches, const Fields& fields) {
+  std::vector<std::size_t> bytes;
+  for (const auto& b : batches) bytes.push_back(sizeof(float) * b.width * fields(b));
+  std::sort(bytes.rbegin(), bytes.rend());
+  bytes.resize(std::min(bytes.size(), static_cast<std::size_t>(tbb::this_task_arena::max_concurrency())));
+  return std::accumulate(bytes.begin(), bytes.end(), std::size_t{0});
+}
 
 /// Runs of batches of the same members, which differ in their columns, among [first, last) of some batches: first and one past the last.
 std::vector<std::pair<std::size_t, std::size_t>> runs_of_members(const std::vector<Batch>& batches, std::size_t first, std::size_t last);

@@ -11,6 +11,7 @@
 
 #include <sunfleck/core/error.hpp>
 #include <sunfleck/core/memory.hpp>
+#include <sunfleck/core/release_memory.hpp>
 #include <sunfleck/core/sampling.hpp>
 #include <sunfleck/radiosity/interior.hpp>
 
@@ -20,7 +21,8 @@ namespace {
 
 constexpr int octahedron = 96;  // cells along an edge of the table of directions
 constexpr std::size_t segments_wanted = 288;
-constexpr double hits_together = 2e6;                             // of lines whose links are merged together
+constexpr std::size_t release_above = std::size_t{16} << 20;      // [bytes] in the making: small ones would only pay for it
+constexpr double hits_together = 1e6;                             // of lines whose links are merged together
 
 /// What one direction leaves behind besides links.
 struct Traced {
@@ -102,7 +104,7 @@ void LineOperator::trace(const Elements& elements, const std::vector<std::uint8_
   // links do.
   const double area = std::accumulate(elements.area.begin(), elements.area.end(), 0.0);
   const double hits_of_direction = 0.5 * area / line_area;
-  const auto fewest = static_cast<std::uint32_t>(std::max(8, tbb::this_task_arena::max_concurrency()));
+  const auto fewest = static_cast<std::uint32_t>(std::max(4, tbb::this_task_arena::max_concurrency()));
   auto together = static_cast<std::uint32_t>(
       std::clamp(hits_together / std::max(hits_of_direction, 1.0), static_cast<double>(fewest), 65536.0));
   if (visitor) together = (together + LineVisitor::streams - 1) / LineVisitor::streams * LineVisitor::streams;  // streams in order
@@ -257,6 +259,7 @@ void LineOperator::trace(const Elements& elements, const std::vector<std::uint8_
   for (std::size_t f = 0; f < field_lines.size(); ++f) point_start[f + 1] += point_start[f];
   outside = out.finish();
   inside = within.finish();
+  if (built_with_ > release_above) release_freed_memory();
 }
 
 void LineOperator::tabulate_directions() {

@@ -11,7 +11,7 @@ namespace sunfleck {
 
 namespace {
 
-constexpr std::size_t parts_wanted = 16;  // each is one thread's work in a merge, and takes room for itself once more
+constexpr std::size_t parts_wanted = 64;  // each is one thread's work in a merge, and takes room for itself once more
 constexpr unsigned widest_part = 16;      // bits
 constexpr std::uint32_t most_count = 255;
 

@@ -6,7 +6,9 @@
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
+#include <sunfleck/core/memory.hpp>
 #include <sunfleck/core/sampling.hpp>
+#include <sunfleck/plant/describe.hpp>
 #include <sunfleck/radiosity/interior.hpp>
 #include <sunfleck/scene/facets.hpp>
 
@@ -53,6 +55,17 @@ OriginalLight original_light(const Scene& scene, const Approximation& approximat
   out.elements.first_cell = {};
   out.elements.cells = {};
   return out;
+}
+
+std::size_t OriginalLight::bytes() const {
+  return elements.bytes() + bytes_of(interior) + bytes_of(facet_material) + (coarse ? coarse->bytes() : 0);
+}
+
+std::size_t Members::bytes() const {
+  std::size_t total = bytes_of(maps) + bytes_of(copies.copies) + bytes_of(copies.ground);
+  for (const auto& o : originals) total += o.bytes();
+  for (const auto& piece : approximation.pieces) total += held_bytes(*piece.plant);
+  return total;
 }
 
 namespace {
@@ -106,6 +119,7 @@ Members with_light(const Scene& scene, const PlacedScene& placed, Approximation 
     const bool piece = out.found.originals[o].parts.front().plant >= scene.plants.size();
     light.coarse = std::make_unique<LineOperator>(light.elements, light.interior, piece ? for_pieces(coarse) : coarse,
                                                   mix(seed, coarse_stream, o), progress);
+    out.made_with = std::max(out.made_with, out.bytes() - light.coarse->bytes() + light.coarse->built_with());
   }
   for (const auto& o : out.originals) out.copies.surfaces.push_back(&o.elements.surface);
   for (const auto& m : out.found.members) {
@@ -199,8 +213,10 @@ Members make_members(const Scene& scene, const PlacedScene& placed, const Classi
   progress.line(fmt::format("{} copies reach into each other and are solved as {}", merged_copies, groups.size()));
   auto found = merged(members.found, groups);
   approximation = std::move(members.approximation);
+  const auto made_apart = members.made_with;
   members = {};
   members = with_light(scene, placed, std::move(approximation), std::move(found), coarse, elements_per_organ, seed, progress);
+  members.made_with = std::max(members.made_with, made_apart);
   members.merged = merged_copies;
   members.tangled = mean_share(members, tangles(members, Surroundings(members, placed)));
   return members;

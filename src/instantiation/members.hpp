@@ -22,6 +22,7 @@ struct OriginalLight {
   std::vector<std::uint32_t> facet_of_part;   ///< [parts + 1] first facet of each part
   std::unique_ptr<LineOperator> coarse;
 
+  std::size_t bytes() const;
   /// The part that a facet of the original belongs to.
   std::size_t part_of(std::uint32_t facet) const {
     return static_cast<std::size_t>(std::upper_bound(facet_of_part.begin(), facet_of_part.end(), facet) - facet_of_part.begin() - 1);
@@ -40,9 +41,11 @@ struct Members {
   std::uint32_t ground_split = 1;       ///< k: every facet of the ground stands in `copies` as k * k parts, one after the other
   std::uint64_t merged = 0;             ///< copies that were put together with others
   double tangled = 0;                   ///< mean share of lines inside members that meet another one
+  std::size_t made_with = 0;            ///< the most that originals held while they were made [bytes]
 
   /// In which light is solved.
   std::size_t size() const { return found.solved; }
+  std::size_t bytes() const;
   bool is_far(std::size_t member) const { return member >= found.solved; }
   std::uint64_t original_facets(std::size_t member) const { return found.originals[found.members[member].original].facets; }
   const OriginalLight& original_of(std::size_t member) const { return originals[found.members[member].original]; }

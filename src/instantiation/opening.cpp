@@ -63,6 +63,7 @@ class Opening {
         std::vector<Rows> rows(placed_rows(members_of(batches, begin, end)));
         if (fine_of != batches[begin].original) {
           fine.reset();
+          s_.memory.hold("fine", 0);
           fine_of = batches[begin].original;
           if (end - begin == 1 && opened_of_original[fine_of] == batches[begin].members.size()) {
             open_once(batches[begin], rows, partial[0]);
@@ -74,8 +75,14 @@ class Opening {
           }
           fine = std::make_unique<LineOperator>(s_.members.originals[fine_of].elements, s_.members.originals[fine_of].interior,
                                                 s_.density.fine, mix(s_.seed, fine_stream, fine_of), s_.progress, seen());
-          if (fine->bytes() > fine_bytes_) fine_bytes_ = fine->bytes();
+          s_.memory.pass("fine", fine->built_with());
+          s_.memory.hold("fine", fine->bytes());
         }
+        std::size_t ends_bytes = 0;
+        for (std::size_t q = begin; q < end; ++q) ends_bytes = std::max(ends_bytes, batches[q].members.size() * fine->points.size() * sizeof(RayEnd));
+        s_.memory.pass("lanes", ends_bytes + lanes_at_once({batches.begin() + static_cast<std::ptrdiff_t>(begin),
+                                                            batches.begin() + static_cast<std::ptrdiff_t>(end)},
+                                                           [&](const Batch& b) { return lanes_of(b, *fine); }));
         const auto runs = runs_of_members(batches, begin, end);
         tbb::parallel_for(std::size_t{0}, runs.size(), [&](std::size_t r) {
           if (s_.progress.cancelled()) return;
@@ -98,7 +105,6 @@ class Opening {
         begin = end;
       }
     }
-    report_.memory.emplace_back("fine", fine_bytes_);
     write_ground(ground_e);
     judge_stand_ins(s_, total_, pieces_, report_);
   }
@@ -108,6 +114,7 @@ class Opening {
   struct Rows {
     std::size_t first = 0, count = 0;
     std::vector<float> irradiance, sunlit;
+    std::size_t bytes() const { return bytes_of(irradiance) + bytes_of(sunlit); }
   };
 
   /// Copies with rows that others stand in for.
@@ -133,7 +140,6 @@ class Opening {
   void open_own(std::uint32_t copy) {
     const std::uint32_t own = s_.begin_own(copy);
     const LineOperator& op = s_.members.coarse_of(own);
-    fine_bytes_ = std::max(fine_bytes_, op.bytes() + s_.members.original_of(own).elements.bytes());
     std::vector<RayEnd> ends(op.points.size());
     const std::size_t pixels = std::size_t{op.pixels()} * op.pixels();
     tbb::parallel_for(std::size_t{0}, op.fields() / pixels,
@@ -189,6 +195,12 @@ class Opening {
       next_row_ += r.count;
       waiting_.erase(waiting_.begin());
     }
+    s_.memory.hold("rows", waiting_bytes());
+  }
+  std::size_t waiting_bytes() const {
+    std::size_t total = 0;
+    for (const auto& [first, r] : waiting_) total += r.bytes();
+    return total;
   }
 
   /// Space for the rows of the copies of the members, member by member, part by part.
@@ -210,6 +222,9 @@ class Opening {
         out.push_back(std::move(r));
       }
     }
+    std::size_t bytes = waiting_bytes();
+    for (const auto& r : out) bytes += r.bytes();
+    s_.memory.hold("rows", bytes);
     return out;
   }
 
@@ -223,7 +238,8 @@ class Opening {
       InsideGather<width> gather(original.elements, cells.empty() ? radiosity : cells, seen());
       const LineOperator fine(original.elements, original.interior, s_.density.fine, mix(s_.seed, fine_stream, b.original), s_.progress,
                               seen(), &gather);
-      fine_bytes_ = std::max(fine_bytes_, fine.bytes() + gather.bytes());
+      s_.memory.pass("fine", fine.built_with() + gather.bytes() + bytes_of(radiosity) + bytes_of(cells));
+      s_.memory.pass("lanes", sizeof(float) * width * lanes_of(b, fine));
       std::vector<std::vector<RayEnd>> ends;
       std::vector<const RayEnd*> fine_ends;
       const std::size_t pixels = std::size_t{fine.pixels()} * fine.pixels();
@@ -253,6 +269,12 @@ class Opening {
     LaneField<width> inside(radiosity.size(), Lanes<width>{});
     add_inside<width>(fine, cells.empty() ? radiosity : cells, inside);
     finish<width>(b, fine, fine_ends, radiosity, std::move(inside), rows, balance);
+  }
+
+  /// Values in each lane of a batch that is opened.
+  std::size_t lanes_of(const Batch& b, const LineOperator& fine) const {
+    const auto& e = s_.members.originals[b.original].elements;
+    return 3 * 2 * e.size() + (fine.seen() == LineOperator::Seen::cells ? 2 * e.surface.cells() : 0) + fine.fields();
   }
 
   /// Radiosity of the elements of a batch in the final light.
@@ -442,7 +464,6 @@ class Opening {
   std::map<std::size_t, Rows> waiting_;
   std::vector<OpenedPieces> pieces_;
   std::size_t next_row_ = 0;
-  std::size_t fine_bytes_ = 0;
 };
 
 }  // namespace

@@ -8,8 +8,10 @@
 #include <tbb/parallel_for.h>
 
 #include <sunfleck/core/memory.hpp>
+#include <sunfleck/core/release_memory.hpp>
 #include <sunfleck/core/sampling.hpp>
 #include <sunfleck/instantiation/plan.hpp>
+#include <sunfleck/scene/counts.hpp>
 
 namespace sunfleck {
 
@@ -29,7 +31,12 @@ SceneLight::SceneLight(const Scene& a_scene, const PlacedScene& a_placed, const 
       bands(a_scene.band_count()),
       columns(states * bands),
       lights(light_sources(a_scene.states)),
-      members(make_members(a_scene, a_placed, settings.classes, density.coarse, density.elements_per_organ, seed, a_progress)) {}
+      members(make_members(a_scene, a_placed, settings.classes, density.coarse, density.elements_per_organ, seed, a_progress)) {
+  release_freed_memory();
+  memory.hold("plants", held_bytes(scene));
+  memory.hold("originals", members.bytes());
+  memory.pass("originals", members.made_with);
+}
 
 void SceneLight::project_sun(SolveReport& report) {
   double& pitch = sun_pitch;
@@ -45,7 +52,10 @@ void SceneLight::project_sun(SolveReport& report) {
     lit.push_back(
         lit_cells(solved, sun_directions(*sun, density.sun_samples, mix(seed, sun_stream)), pitch, mix(seed, sun_stream, 1), progress));
     fragments += lit.back().fragments;
-    report.memory.emplace_back("sun", bytes_of(lit.back().lit));
+    std::size_t bytes = 0;
+    for (const auto& one : lit) bytes += bytes_of(one.lit);
+    memory.hold("sun", bytes);
+    memory.pass("sun", bytes + 4 * lit.back().lit.size());  // two counts a cell
   }
   report.counts.emplace_back("sun_fragments", fragments);
 }
@@ -73,7 +83,7 @@ void SceneLight::look_around(SolveReport& report) {
                             std::max(8u, density.ground_rays / (members.ground_split * members.ground_split)), density.sun_samples,
                             mix(seed, ground_stream), progress);
   report.counts.emplace_back("rays", ends.size() + ground.seen.size() * ground.rays);
-  report.memory.emplace_back("rays", around->bytes() + bytes_of(ends) + ground.bytes());
+  memory.hold("rays", around->bytes() + bytes_of(ends) + ground.bytes());
 }
 
 std::uint32_t SceneLight::begin_own(std::uint32_t copy) {
@@ -101,6 +111,11 @@ std::uint32_t SceneLight::begin_own(std::uint32_t copy) {
   for (const auto* sun : lights.suns)
     own_lit.push_back(lit_cells(shade, sun_directions(*sun, density.sun_samples, mix(seed, sun_stream)), sun_pitch,
                                 mix(seed, sun_stream, 1), progress, static_cast<std::uint32_t>(shade.copies.size() - 1)));
+  const std::size_t apart = light.bytes() - light.coarse->bytes();
+  std::size_t sun = 0;
+  for (const auto& one : own_lit) sun += bytes_of(one.lit);
+  memory.pass("fine", apart + light.coarse->built_with());
+  memory.hold("fine", light.bytes() + sun);
   return own_member;
 }
 
@@ -108,6 +123,7 @@ void SceneLight::end_own() {
   around->set_hidden(gone, false);
   gone.clear();
   own_lit.clear();
+  memory.hold("fine", 0);
   members.originals.pop_back();
   members.maps.pop_back();
   members.found.members.pop_back();

@@ -11,6 +11,7 @@
 
 #include "instantiation/ground_light.hpp"
 #include "instantiation/members.hpp"
+#include "instantiation/memory_count.hpp"
 #include "instantiation/surroundings.hpp"
 
 namespace sunfleck {
@@ -43,6 +44,7 @@ struct SceneLight {
   /// Scalar product of two lights per column, weighted by the power that leaves through the fields and from the ground.
   std::vector<double> product(const Light& a, const Light& b) const;
   Light no_light() const;
+  std::size_t bytes_of_light() const { return sizeof(float) * columns * (field_start.back() + ground.seen.size()); }
   std::vector<std::uint32_t> all_members() const;
   /// Opens a copy that others stand in for: it becomes a member of an original of its own with the fine operator, those that stood in for
   /// it are gone, and the sun is projected onto it. Returns its number, which is good until end_own().
@@ -69,6 +71,7 @@ struct SceneLight {
   std::vector<RayEnd> ends;                           ///< of the coarse operators' points
   GroundView ground;
   double sun_pitch = 0;  ///< of the sun's lines [m]
+  MemoryCount memory;
 
  private:
   std::uint32_t own_member = 0xffffffffu;  ///< the member that begin_own() has made

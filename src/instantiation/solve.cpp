@@ -8,6 +8,7 @@
 
 #include <sunfleck/core/error.hpp>
 #include <sunfleck/core/memory.hpp>
+#include <sunfleck/core/release_memory.hpp>
 
 #include "instantiation/batches.hpp"
 #include "instantiation/closed_light.hpp"
@@ -22,18 +23,16 @@ namespace {
 constexpr std::uint32_t most_sweeps = 200;
 
 std::uint64_t report_originals(const SceneLight& s, SolveReport& report) {
-  std::uint64_t elements = 0, links = 0, bytes = 0;
+  std::uint64_t elements = 0, links = 0;
   for (const auto& o : s.members.originals) {
     elements += o.elements.size();
     links += o.coarse->inside.size();
-    bytes += o.coarse->bytes() + o.elements.bytes();
   }
   report.counts.emplace_back("originals", s.members.originals.size());
   report.counts.emplace_back("copies", s.members.size());
   if (s.members.merged > 0) report.counts.emplace_back("merged_copies", s.members.merged);
   report.counts.emplace_back("elements", elements);
   report.counts.emplace_back("links", links);
-  report.memory.emplace_back("originals", bytes);
   s.progress.line(
       fmt::format("{} originals for {} copies, {} elements, {} links", s.members.originals.size(), s.members.size(), elements, links));
   if (!s.placed.closed.empty())
@@ -108,6 +107,7 @@ SolveReport solve_instantiation(const Scene& scene, const PlacedScene& placed, c
     add_seconds(report.timings, phase, watch.seconds());
     watch = {};
   };
+  release_freed_memory();  // what reading and classifying have left
   SceneLight s(scene, placed, settings, progress);
   const auto links = report_originals(s, report);
   timed("originals");
@@ -117,6 +117,10 @@ SolveReport solve_instantiation(const Scene& scene, const PlacedScene& placed, c
   timed("rays");
 
   const auto batches = batches_of(s, s.all_members());
+  s.memory.hold("lanes", lanes_at_once(batches, [&](const Batch& b) {
+                  const auto& o = s.members.originals[b.original];
+                  return 2 * 2 * o.elements.size() + o.coarse->fields();
+                }));
   std::uint64_t sweeps = 0;
   OuterIteration outer;
   outer.tolerance = settings.tolerance > 0 ? settings.tolerance : s.density.tolerance;
@@ -126,8 +130,10 @@ SolveReport solve_instantiation(const Scene& scene, const PlacedScene& placed, c
     progress.line(fmt::format("pass {}: residual {:.1e}, {:.1f} s", passes, residual, watch.seconds()));
   };
   const auto iterated = iterate(s, outer);
+  s.memory.hold("fields", iterated.bytes);
   if (!iterated.converged) report.status = SolveStatus::not_converged;
-  report.memory.emplace_back("fields", iterated.bytes);
+  s.memory.hold("lanes", 0);
+  s.memory.hold("fields", s.bytes_of_light());
   report.counts.emplace_back("sweeps", sweeps);
   timed("iteration");
 
@@ -135,6 +141,7 @@ SolveReport solve_instantiation(const Scene& scene, const PlacedScene& placed, c
   timed("opening");
   absorb_closed(s, iterated.light, report);
   if (!placed.closed.empty()) timed("closed structures");
+  report.memory = s.memory.rows();
   return report;
 }
 

@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include <sunfleck/core/memory.hpp>
+
 namespace sunfleck {
 
 PlantSummary summarize_plant(const Plant& plant) {
@@ -78,6 +80,18 @@ std::uint32_t branching_order(const Plant& plant, std::uint32_t structure) {
     order += std::any_of(axes.begin(), axes.end(), [&](const char* name) { return type == name; });
   }
   return order;
+}
+
+std::size_t held_bytes(const Plant& plant) {
+  const auto text = [](const std::string& s) { return s.capacity() > 15 ? s.capacity() + 1 : 0; };  // longer than fits in the string itself
+  std::size_t total = bytes_of(plant.structures) + bytes_of(plant.shapes) + bytes_of(plant.meshes);
+  for (const auto& s : plant.structures) {
+    total += text(s.name) + bytes_of(s.attributes) + (s.attributes.empty() ? 0 : 16);  // the latter for the allocation itself
+    for (const auto& [key, value] : s.attributes)
+      if (const auto* words = std::get_if<std::string>(&value)) total += text(*words);
+  }
+  for (const auto& mesh : plant.meshes) total += bytes_of(mesh.vertices) + bytes_of(mesh.triangles);
+  return total;
 }
 
 }  // namespace sunfleck

@@ -4,6 +4,9 @@
 #include <optional>
 #include <unordered_set>
 
+#include <sunfleck/core/memory.hpp>
+#include <sunfleck/plant/describe.hpp>
+
 namespace sunfleck {
 
 namespace {
@@ -82,6 +85,16 @@ SceneCounts count(const Scene& scene) {
   counts.ground_facets = ground_facets(scene);
   counts.organs += ground_organs(scene);
   return counts;
+}
+
+std::uint64_t held_bytes(const Scene& scene) {
+  std::unordered_set<const Plant*> seen;
+  std::uint64_t total = 0;
+  for (const auto& entry : scene.plants) {
+    total += bytes_of(entry.shape_optics);
+    if (seen.insert(entry.plant.get()).second) total += held_bytes(*entry.plant);
+  }
+  return total;
 }
 
 }  // namespace sunfleck

@@ -35,6 +35,9 @@ struct PlantSummary {
 
 PlantSummary summarize_plant(const Plant& plant);
 
+/// Bytes that a plant holds.
+std::size_t held_bytes(const Plant& plant);
+
 /// The summary as a few lines of text, with a final line end.
 std::string describe_plant(const Plant& plant);
 std::string describe_plant(const PlantSummary& summary);

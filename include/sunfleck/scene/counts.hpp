@@ -27,6 +27,9 @@ struct SceneCounts {
   std::uint64_t facets() const { return plant_facets + ground_facets; }
 };
 
+/// Bytes that the plants of a scene hold, each once, with what the scene knows of their shapes.
+std::uint64_t held_bytes(const Scene& scene);
+
 /// The scene must have passed check_scene() (no cycle among groups).
 SceneCounts count(const Scene& scene);
 
