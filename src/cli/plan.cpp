@@ -169,7 +169,9 @@ void add_instantiation(const Scene& scene, const MethodChoice& choice, Progress&
                                {"sun", "sunlit fractions of all cells"},
                                {"rays", "rays between copies"},
                                {"fields", "fields of light between copies"},
-                               {"fine", "operator of the original being opened"}};
+                               {"lanes", "light inside copies that are worked on"},
+                               {"rows", "rows that wait for the file"},
+                               {"fine", "the original being opened, with its operator in the making"}};
   add_memory(predicted.memory, names, plan);
   plan.work.emplace_back("elements of originals", predicted.elements);
   plan.work.emplace_back("links of originals", predicted.links);

@@ -105,6 +105,16 @@ void refuse_depth(const Scene& scene, const std::string& method) {
                      stops ? "method instantiation" : "method instantiation or reference");
 }
 
+/// Where the solver counts what it holds at once, the program itself, as it stood before it read anything, is a part of it.
+void count_program(std::size_t bytes_at_start, SolveReport& report) {
+  for (auto& [name, bytes] : report.memory)
+    if (name == "at_once") {
+      bytes += bytes_at_start;
+      report.memory.insert(report.memory.begin(), {"program", bytes_at_start});
+      return;
+    }
+}
+
 bool wants_certificate(const MethodChoice& choice, const Scene& scene, const PlacedScene& placed, const SolveOptions& options) {
   const bool asked = options.error || scene.solve.certificate.value_or(true);  // a wanted error cannot do without
   return choice.method != "reference" && options.certificate && asked && placed.first_ground_facet > 0;
@@ -211,6 +221,7 @@ void say_not_reached(const Scene& scene, const Refinement& refinement, const Cer
 
 int verb_solve(const SolveOptions& options, Progress& progress) {
   const Stopwatch total;
+  const std::size_t bytes_at_start = resident_bytes();
   check_output_path(options.result, {".h5", ".hdf5"}, {options.scene});
   if (options.picture) check_output_path(*options.picture, {".png"}, {options.scene, options.result});
   std::optional<tbb::global_control> limit;
@@ -273,6 +284,7 @@ int verb_solve(const SolveOptions& options, Progress& progress) {
     if (options.picture) picture.emplace(scene, placed, 0, PictureSettings{}, &rows_sink, progress);
     IrradianceSink& sink = picture ? *picture : rows_sink;
     report = run_method(choice, scene, placed, facets, options, seed, sink, progress);
+    count_program(bytes_at_start, report);
     if (structures) structures->append(report.structures);
     again = false;
     if (picture) image = picture->draw(progress).image;

@@ -8,10 +8,9 @@
 #include <utility>
 #include <vector>
 
-#include <tbb/task_arena.h>
-
 #include "instantiation/local_solve.hpp"
 #include "instantiation/scene_light.hpp"
+#include "instantiation/threads.hpp"
 
 namespace sunfleck {
 
@@ -32,7 +31,7 @@ std::size_t lanes_at_once(const std::vector<Batch>& batches, const Fields& field
   std::vector<std::size_t> bytes;
   for (const auto& b : batches) bytes.push_back(sizeof(float) * b.width * fields(b));
   std::sort(bytes.rbegin(), bytes.rend());
-  bytes.resize(std::min(bytes.size(), static_cast<std::size_t>(tbb::this_task_arena::max_concurrency())));
+  bytes.resize(std::min(bytes.size(), threads_at_work()));
   return std::accumulate(bytes.begin(), bytes.end(), std::size_t{0});
 }
 

@@ -7,7 +7,6 @@
 
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
 
 #include <sunfleck/core/error.hpp>
 #include <sunfleck/core/memory.hpp>
@@ -15,14 +14,16 @@
 #include <sunfleck/core/sampling.hpp>
 #include <sunfleck/radiosity/interior.hpp>
 
+#include "instantiation/threads.hpp"
+
 namespace sunfleck {
 
 namespace {
 
 constexpr int octahedron = 96;  // cells along an edge of the table of directions
 constexpr std::size_t segments_wanted = 288;
-constexpr std::size_t release_above = std::size_t{16} << 20;      // [bytes] in the making: small ones would only pay for it
-constexpr double hits_together = 1e6;                             // of lines whose links are merged together
+constexpr std::size_t release_above = std::size_t{16} << 20;  // [bytes] in the making: small ones would only pay for it
+constexpr double hits_together = 1e6;                         // of lines whose links are merged together
 
 /// What one direction leaves behind besides links.
 struct Traced {
@@ -39,7 +40,9 @@ struct Tracer {
   std::vector<std::uint32_t> lines;
   std::vector<std::uint32_t> hits, inside_hits;  ///< of cells, where anything is enclosed
 
-  std::size_t bytes() const { return bundle.bytes() + bytes_of(up) + bytes_of(along) + bytes_of(lines) + bytes_of(hits) + bytes_of(inside_hits); }
+  std::size_t bytes() const {
+    return bundle.bytes() + bytes_of(up) + bytes_of(along) + bytes_of(lines) + bytes_of(hits) + bytes_of(inside_hits);
+  }
 };
 
 void add_to(std::vector<std::uint32_t>& sum, const std::vector<std::uint32_t>& part) {
@@ -104,9 +107,9 @@ void LineOperator::trace(const Elements& elements, const std::vector<std::uint8_
   // links do.
   const double area = std::accumulate(elements.area.begin(), elements.area.end(), 0.0);
   const double hits_of_direction = 0.5 * area / line_area;
-  const auto fewest = static_cast<std::uint32_t>(std::max(4, tbb::this_task_arena::max_concurrency()));
-  auto together = static_cast<std::uint32_t>(
-      std::clamp(hits_together / std::max(hits_of_direction, 1.0), static_cast<double>(fewest), 65536.0));
+  const auto fewest = static_cast<std::uint32_t>(std::max(std::size_t{4}, threads_at_work()));
+  auto together =
+      static_cast<std::uint32_t>(std::clamp(hits_together / std::max(hits_of_direction, 1.0), static_cast<double>(fewest), 65536.0));
   if (visitor) together = (together + LineVisitor::streams - 1) / LineVisitor::streams * LineVisitor::streams;  // streams in order
   for (std::uint32_t first = 0; first < directions_; first += together) {
     const std::uint32_t end = std::min(directions_, first + together);

@@ -79,7 +79,8 @@ class Opening {
           s_.memory.hold("fine", fine->bytes());
         }
         std::size_t ends_bytes = 0;
-        for (std::size_t q = begin; q < end; ++q) ends_bytes = std::max(ends_bytes, batches[q].members.size() * fine->points.size() * sizeof(RayEnd));
+        for (std::size_t q = begin; q < end; ++q)
+          ends_bytes = std::max(ends_bytes, batches[q].members.size() * fine->points.size() * sizeof(RayEnd));
         s_.memory.pass("lanes", ends_bytes + lanes_at_once({batches.begin() + static_cast<std::ptrdiff_t>(begin),
                                                             batches.begin() + static_cast<std::ptrdiff_t>(end)},
                                                            [&](const Batch& b) { return lanes_of(b, *fine); }));

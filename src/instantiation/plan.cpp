@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include <sunfleck/core/memory.hpp>
 #include <sunfleck/light/light_sources.hpp>
@@ -9,6 +10,7 @@
 
 #include "instantiation/members.hpp"
 #include "instantiation/surroundings.hpp"
+#include "instantiation/threads.hpp"
 
 namespace sunfleck {
 
@@ -71,15 +73,38 @@ InstantiationPlan plan_instantiation(const Scene& scene, const PlacedScene& plac
     return LinkRows::bytes_per_link(sides_seen) * links + LinkRows::bytes_per_link(static_cast<std::size_t>(fields)) * exits +
            16.0 * static_cast<double>(more.lines.size()) + (8.0 + 12.0 * d.points) * fields;
   };
-  double shared = 0, fine = 0, links = 0;
-  for (const auto& o : members.originals) {
+  const auto threads = static_cast<double>(threads_at_work());
+  // lists of links, 6 bytes each, of some directions, and a bundle of lines a thread
+  const auto to_make = [&](const Elements& e, const OperatorDensity& d) {
+    const double hits = 0.5 * std::accumulate(e.area.begin(), e.area.end(), 0.0) / (0.5 * e.organ_area / d.lines_per_organ);
+    const double together = std::min<double>(d.directions, std::max({4.0, threads, 1e6 / std::max(hits, 1.0)}));
+    return hits * (together * 2 * 6 + threads * 60);
+  };
+  std::vector<std::uint64_t> copies(members.originals.size(), 0);
+  for (std::size_t m = 0; m < members.size(); ++m) ++copies[members.found.members[m].original];
+  double shared = 0, fine = 0, links = 0, making = 0, lanes = 0, rows = 0;
+  for (std::size_t k = 0; k < members.originals.size(); ++k) {
+    const auto& o = members.originals[k];
     OperatorDensity half = pilot;
     half.directions /= 2;
     const LineOperator few(o.elements, o.interior, half, settings.seed, progress);
     double coarse_links = 0, fine_links = 0;
     shared +=
         static_cast<double>(o.elements.bytes()) + bytes_of_operator(few, *o.coarse, density.coarse, 2 * o.elements.size(), coarse_links);
-    fine = std::max(fine, bytes_of_operator(few, *o.coarse, density.fine, 2 * o.elements.surface.cells(), fine_links));
+    const double all_fine = bytes_of_operator(few, *o.coarse, density.fine, 2 * o.elements.surface.cells(), fine_links);
+    const auto of_copies = static_cast<double>(copies[k] * columns);
+    const double width = std::clamp(std::exp2(std::ceil(std::log2(std::max(of_copies / 2, 1.0)))), 2.0, 16.0);
+    const double side_lanes = 4 * width * 2 * static_cast<double>(o.elements.size()),
+                 cells = 4 * width * 2 * static_cast<double>(o.elements.surface.cells());
+    const bool once = of_copies <= width;  // then its lines are followed and not kept
+    const double sums =
+        once ? LineVisitor::streams * side_lanes + cells - fine_links * LinkRows::bytes_per_link(2 * o.elements.surface.cells()) : 0.0;
+    fine = std::max(fine, all_fine + sums + to_make(o.elements, density.fine));
+    making = std::max(making, to_make(o.elements, density.coarse));
+    lanes = std::max(lanes, std::min(threads, std::ceil(of_copies / width)) * (3 * side_lanes + cells));
+    const auto facets = static_cast<double>(members.found.originals[k].facets);
+    rows = std::max(rows, std::min(static_cast<double>(copies[k]) * facets * 8 * static_cast<double>(columns + scene.states.size()),
+                                   double{96u << 20}));
     links += coarse_links;
     plan.elements += o.elements.size();
   }
@@ -89,12 +114,15 @@ InstantiationPlan plan_instantiation(const Scene& scene, const PlacedScene& plac
   for (std::size_t m = 0; m < members.size(); ++m) cells += members.original_of(m).elements.surface.cells();
   const double pixels = double(density.coarse.field_pixels) * density.coarse.field_pixels;
   const double fields = 2.0 * density.coarse.directions * pixels * static_cast<double>(members.size());
-  plan.memory.emplace_back("originals", static_cast<std::uint64_t>(shared));
+  plan.memory.emplace_back("plants", held_bytes(scene));
+  plan.memory.emplace_back("originals", static_cast<std::uint64_t>(shared + making));
   if (!lights.suns.empty()) plan.memory.emplace_back("sun", lights.suns.size() * cells + 4 * cells);
   const Surroundings around(members, placed);
   plan.memory.emplace_back("rays", around.bytes() + static_cast<std::uint64_t>(fields * density.coarse.points * sizeof(RayEnd)) +
-                                       2 * (placed.ground.size() + placed.near_ground.size()) * density.ground_rays * sizeof(RayEnd));
+                                       (placed.ground.size() + placed.near_ground.size()) * density.ground_rays * sizeof(RayEnd));
   plan.memory.emplace_back("fields", static_cast<std::uint64_t>(6 * 4 * fields * static_cast<double>(columns)));
+  plan.memory.emplace_back("lanes", static_cast<std::uint64_t>(lanes));
+  plan.memory.emplace_back("rows", static_cast<std::uint64_t>(rows));
   plan.memory.emplace_back("fine", static_cast<std::uint64_t>(fine));
   return plan;
 }
