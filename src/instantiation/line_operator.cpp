@@ -297,6 +297,16 @@ std::uint32_t LineOperator::field_at(const Vec3& p, const Vec3& d) const {
   return field_of(nearest_[cell(q[1]) * octahedron + cell(q[0])], p);
 }
 
+void LineOperator::forget_links() {
+  inside = {};
+  outside = {};
+  lines = {};
+  enclosed = {};
+  open_area = {};
+  stand_in = {};
+  points = {};
+}
+
 std::size_t LineOperator::bytes() const {
   std::size_t total = bytes_of(lines) + bytes_of(field_lines) + bytes_of(point_start) + bytes_of(points) + bytes_of(segments) +
                       bytes_of(stand_in) + bytes_of(projections_) + bytes_of(nearest_) + bytes_of(enclosed) + bytes_of(open_area);

@@ -64,6 +64,8 @@ class LineOperator {
   std::uint32_t field_of(std::size_t sense, const Vec3& p) const;
 
   std::size_t bytes() const;
+  /// Drops all but what tells fields of directions and points.
+  void forget_links();
   /// The most that was held while it was made, itself included [bytes].
   std::size_t built_with() const { return built_with_; }
 

@@ -61,6 +61,16 @@ std::size_t OriginalLight::bytes() const {
   return elements.bytes() + bytes_of(interior) + bytes_of(facet_material) + (coarse ? coarse->bytes() : 0);
 }
 
+void OriginalLight::forget() {
+  Elements left;
+  left.surface.origin = elements.surface.origin;
+  left.organ_area = elements.organ_area;
+  elements = std::move(left);
+  interior = {};
+  facet_material = {};
+  coarse->forget_links();
+}
+
 std::size_t Members::bytes() const {
   std::size_t total = bytes_of(maps) + bytes_of(copies.copies) + bytes_of(copies.ground);
   for (const auto& o : originals) total += o.bytes();

@@ -23,6 +23,8 @@ struct OriginalLight {
   std::unique_ptr<LineOperator> coarse;
 
   std::size_t bytes() const;
+  /// Drops all but what rays that end in its copies ask for.
+  void forget();
   /// The part that a facet of the original belongs to.
   std::size_t part_of(std::uint32_t facet) const {
     return static_cast<std::size_t>(std::upper_bound(facet_of_part.begin(), facet_of_part.end(), facet) - facet_of_part.begin() - 1);

@@ -39,6 +39,8 @@ class Opening {
         ++opened_of_original[s_.members.found.members[m].original];
       }
     const auto stood_for = copies_stood_for();
+    forgets_ = stood_for.empty() && s_.placed.closed.empty();  // else others shade by it, or absorb by it
+    left_of_original_ = opened_of_original;
     std::size_t first = 0, next_own = 0;
     while (first < opened.size() || next_own < stood_for.size()) {
       // those that others stand in for come in their turn, one by one
@@ -69,6 +71,7 @@ class Opening {
             open_once(batches[begin], rows, partial[0]);
             add_balance(batches[begin], partial[0]);
             send(rows);
+            opened_group(batches, begin, end);
             begin = end;
             fine_of = no_parent;
             continue;
@@ -103,6 +106,7 @@ class Opening {
         s_.progress.check();
         for (std::size_t q = begin; q < end; ++q) add_balance(batches[q], partial[q - begin]);
         send(rows);
+        opened_group(batches, begin, end);
         begin = end;
       }
     }
@@ -127,6 +131,15 @@ class Opening {
         out.push_back(member.copies.front());
     }
     return out;
+  }
+
+  /// An original whose last copy is opened makes room for those to come.
+  void opened_group(const std::vector<Batch>& batches, std::size_t begin, std::size_t end) {
+    auto& left = left_of_original_[batches[begin].original];
+    left -= static_cast<std::uint32_t>(members_of(batches, begin, end).size());
+    if (left > 0 || !forgets_) return;
+    s_.members.originals[batches[begin].original].forget();
+    s_.memory.hold("originals", s_.members.bytes());
   }
 
   static std::vector<std::uint32_t> members_of(const std::vector<Batch>& batches, std::size_t begin, std::size_t end) {
@@ -465,6 +478,8 @@ class Opening {
   std::map<std::size_t, Rows> waiting_;
   std::vector<OpenedPieces> pieces_;
   std::size_t next_row_ = 0;
+  bool forgets_ = false;
+  std::vector<std::uint32_t> left_of_original_;  ///< copies to be opened
 };
 
 }  // namespace
