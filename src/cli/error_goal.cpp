@@ -110,9 +110,17 @@ bool Refinement::below(double fineness, double cautious) const {
   return true;
 }
 
+bool Refinement::last_says(double fineness, double share) const {
+  const auto& last = solves_.back();
+  const double g = error_at(method_, fineness) / error_at(method_, last.fineness);
+  for (std::size_t b = 0; b < goal_.size(); ++b)
+    if (goal_[b] > 0 && std::sqrt(last.square[b]) * g > share * goal_[b]) return false;
+  return true;
+}
+
 bool Refinement::reached() const {
-  constexpr double cautions[most_solves + 1] = {0.0, caution, 0.5, 0.0};
-  return !solves_.empty() && below(solves_.back().fineness, cautions[solves_.size()]);
+  constexpr double cautions[most_solves + 1] = {0.0, caution, 0.8, 0.3};
+  return !solves_.empty() && last_says(solves_.back().fineness, 1.0) && below(solves_.back().fineness, cautions[solves_.size()]);
 }
 
 std::optional<double> Refinement::next(double limit) const {
@@ -121,7 +129,7 @@ std::optional<double> Refinement::next(double limit) const {
   const double last = solves_.back().fineness;
   if (last >= limit - 0.5 * step) return std::nullopt;
   double fineness = last + step;
-  while (fineness < limit && !below(fineness, caution)) fineness += step;
+  while (fineness < limit && !(below(fineness, caution) && last_says(fineness, 0.93))) fineness += step;
   return std::min(fineness, limit);
 }
 

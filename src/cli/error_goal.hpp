@@ -38,8 +38,8 @@ class Refinement {
   /// What a solve at `fineness` amounts to, by its certificate.
   void add(double fineness, const Certificate& certificate);
 
-  /// Is the last solve good enough? It is, where its estimate as above is below the goal in all bands: the first solve with `caution`, the
-  /// second, which was chosen with it, with half a standard error, the third without.
+  /// Is the last solve good enough? It is, where its own certificate finds no more than the goal in any band, and the estimate as above is
+  /// below it too: the first solve with `caution`, the second, which was chosen with it, with .8 standard errors, the third with .3.
   bool reached() const;
   /// The fineness to go on with, at most `limit`; none where that brings nothing more, or after `most_solves`.
   std::optional<double> next(double limit) const;
@@ -48,9 +48,11 @@ class Refinement {
 
   const std::vector<double>& goal() const { return goal_; }
   static constexpr std::size_t most_solves = 3;
-  static constexpr double caution = 1.0;
+  static constexpr double caution = 1.3;
 
  private:
+  /// Is what the last certificate found, carried over to `fineness`, at most a share of the goal?
+  bool last_says(double fineness, double share) const;
   struct Solve {
     double fineness;
     std::vector<double> square, standard_error;  ///< [b]

@@ -77,7 +77,8 @@ class Opening {
             continue;
           }
           fine = std::make_unique<LineOperator>(s_.members.originals[fine_of].elements, s_.members.originals[fine_of].interior,
-                                                s_.density.fine, mix(s_.seed, fine_stream, fine_of), s_.progress, seen());
+                                                gather_density(s_.density, opened_of_original[fine_of]), mix(s_.seed, fine_stream, fine_of),
+                                                s_.progress, seen());
           s_.memory.pass("fine", fine->built_with());
           s_.memory.hold("fine", fine->bytes());
         }
@@ -250,8 +251,8 @@ class Opening {
       const LaneField<width> radiosity = solved<width>(b, stored_ends(s_, b));
       const LaneField<width> cells = seen() == LineOperator::Seen::cells ? on_cells<width>(b, radiosity) : LaneField<width>{};
       InsideGather<width> gather(original.elements, cells.empty() ? radiosity : cells, seen());
-      const LineOperator fine(original.elements, original.interior, s_.density.fine, mix(s_.seed, fine_stream, b.original), s_.progress,
-                              seen(), &gather);
+      const LineOperator fine(original.elements, original.interior, gather_density(s_.density, b.members.size()),
+                              mix(s_.seed, fine_stream, b.original), s_.progress, seen(), &gather);
       s_.memory.pass("fine", fine.built_with() + gather.bytes() + bytes_of(radiosity) + bytes_of(cells));
       s_.memory.pass("lanes", sizeof(float) * width * lanes_of(b, fine));
       std::vector<std::vector<RayEnd>> ends;

@@ -45,7 +45,7 @@ InstantiationDensity adapted(InstantiationDensity density, std::uint64_t facets)
     density.coarse.directions *= 2;
     density.coarse.lines_per_organ *= 1.5;
   } else {
-    density.sun_lines_per_organ *= 0.3;
+    density.sun_lines_per_organ *= 0.5;
   }
   return density;
 }
@@ -80,8 +80,11 @@ InstantiationPlan plan_instantiation(const Scene& scene, const PlacedScene& plac
     const double together = std::min<double>(d.directions, std::max({4.0, threads, 1e6 / std::max(hits, 1.0)}));
     return hits * (together * 2 * 6 + threads * 60);
   };
-  std::vector<std::uint64_t> copies(members.originals.size(), 0);
-  for (std::size_t m = 0; m < members.size(); ++m) ++copies[members.found.members[m].original];
+  std::vector<std::uint64_t> copies(members.originals.size(), 0), opened(copies);
+  for (std::size_t m = 0; m < members.size(); ++m) {
+    ++copies[members.found.members[m].original];
+    opened[members.found.members[m].original] += members.found.members[m].copies.front() < placed.copies.size();
+  }
   double shared = 0, fine = 0, links = 0, making = 0, lanes = 0, rows = 0;
   for (std::size_t k = 0; k < members.originals.size(); ++k) {
     const auto& o = members.originals[k];
@@ -91,7 +94,8 @@ InstantiationPlan plan_instantiation(const Scene& scene, const PlacedScene& plac
     double coarse_links = 0, fine_links = 0;
     shared +=
         static_cast<double>(o.elements.bytes()) + bytes_of_operator(few, *o.coarse, density.coarse, 2 * o.elements.size(), coarse_links);
-    const double all_fine = bytes_of_operator(few, *o.coarse, density.fine, 2 * o.elements.surface.cells(), fine_links);
+    const OperatorDensity gather = gather_density(density, opened[k]);
+    const double all_fine = bytes_of_operator(few, *o.coarse, gather, 2 * o.elements.surface.cells(), fine_links);
     const auto of_copies = static_cast<double>(copies[k] * columns);
     const double width = std::clamp(std::exp2(std::ceil(std::log2(std::max(of_copies / 2, 1.0)))), 2.0, 16.0);
     const double side_lanes = 4 * width * 2 * static_cast<double>(o.elements.size()),
@@ -99,7 +103,7 @@ InstantiationPlan plan_instantiation(const Scene& scene, const PlacedScene& plac
     const bool once = of_copies <= width;  // then its lines are followed and not kept
     const double sums =
         once ? LineVisitor::streams * side_lanes + cells - fine_links * LinkRows::bytes_per_link(2 * o.elements.surface.cells()) : 0.0;
-    fine = std::max(fine, all_fine + sums + to_make(o.elements, density.fine));
+    fine = std::max(fine, all_fine + sums + to_make(o.elements, gather));
     making = std::max(making, to_make(o.elements, density.coarse));
     lanes = std::max(lanes, std::min(threads, std::ceil(of_copies / width)) * (3 * side_lanes + cells));
     const auto facets = static_cast<double>(members.found.originals[k].facets);

@@ -1,5 +1,6 @@
 #include <sunfleck/instantiation/solve.hpp>
 
+#include <algorithm>
 #include <optional>
 
 #include <fmt/format.h>
@@ -80,11 +81,19 @@ InstantiationDensity instantiation_density(Quality quality) {
     case Quality::draft:
       return {{32, 1.5, 6, 1}, {64, 3.0, 6, 1}, 2.0, 2, 200.0, 32, 5e-3, 3e-3};
     case Quality::standard:
-      return {{48, 2.0, 8, 1}, {128, 5.0, 8, 2}, 2.0, 4, 1000.0, 64, 2e-3, 1e-3};
+      return {{32, 1.5, 8, 1}, {160, 5.0, 8, 2}, 2.0, 6, 1500.0, 64, 2e-3, 1e-3};
     case Quality::fine:
       return {{96, 4.0, 8, 2}, {256, 8.0, 8, 2}, 4.0, 8, 4000.0, 128, 3e-4, 5e-5};
   }
   return {};
+}
+
+OperatorDensity gather_density(const InstantiationDensity& density, std::size_t opened) {
+  OperatorDensity d = density.fine;
+  if (opened < 8) return d;
+  d.directions = std::max(d.directions, std::min(2 * d.directions, 320u));
+  d.points = (d.points + 1) / 2;
+  return d;
 }
 
 void check_instantiable(const Scene& scene) {

@@ -18,7 +18,7 @@ namespace sunfleck {
 namespace {
 
 constexpr int tile = 256;                    // lines
-constexpr std::uint32_t chunk_rows = 64;     // triangles that are left out of a tile together
+constexpr std::uint32_t chunk_rows = 32;     // triangles that are left out of a tile together
 constexpr std::uint32_t most_count = 65535;  // counts are 16 bits wide and stay at their largest value
 
 /// Bounding spheres of runs of triangles of a surface.

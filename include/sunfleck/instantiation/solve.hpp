@@ -28,6 +28,10 @@ struct InstantiationDensity {
 };
 InstantiationDensity instantiation_density(Quality quality);
 
+/// Of the last gather of an original of which `opened` copies are opened: many share what its operator costs, so that for eight and more it
+/// has twice the directions, as far as 320, with half the rays a pixel, which are traced from each copy.
+OperatorDensity gather_density(const InstantiationDensity& density, std::size_t opened);
+
 struct InstantiationSettings : SolveSettings {
   /// Which structures stand in for others until these are opened, for plants that name a policy and are placed once; null = none.
   const Classification* classes = nullptr;
