@@ -207,7 +207,7 @@ def full():
         SceneChoice('coffee', 'coffee, one plant of 118,798 facets on open ground (third-party)', coffee, 64,
                     jobs(3, clustering='draft standard fine*1 draft+*1 2%*2', flat='draft standard*2', instantiation='draft standard fine*1',
                          direct='draft standard*1 fine*1', reference='16')),
-        SceneChoice('wheat', 'wheat, 24 plants of 3 shapes in a periodic plot', wheat(3, 4, 2), 32,
+        SceneChoice('wheat', 'wheat, 24 plants of 3 shapes in a periodic plot', wheat(3, 4, 2), 128,
                     jobs(3, clustering='draft standard fine*1 draft+*1 4%*2', flat='draft standard', instantiation='draft standard', direct='draft', reference='16')),
         SceneChoice('canopy_5k', 'random canopy of 5,000 facets, periodic, LAI 3', canopy(5_000), 1024,
                     jobs(3, clustering=every + ' draft+*1 1%*5 2%*4', flat=every + ' 2%*2', direct=every, reference='16 64 256')),
@@ -225,9 +225,9 @@ def full():
         SceneChoice('grove', 'a grove of 16 copies of one poplar', grove(4, 5, 2.2), 16,
                     jobs(2, clustering='draft standard*1', instantiation='draft standard fine*1', direct='draft')),
         SceneChoice('ten_poplars', 'ten poplars, 1.2 million facets, no two alike', of_repository('plants/ten_poplars.toml'), 16,
-                    jobs(1, clustering='draft standard', instantiation='draft', direct='draft')),
+                    jobs(1, clustering='draft standard', instantiation='draft standard', direct='draft')),
         SceneChoice('canopy_1m', 'random canopy of 1,000,000 facets, periodic, LAI 3', canopy(1_000_000), 16,
-                    jobs(1, clustering='draft standard', flat='draft', direct='draft')),
+                    jobs(1, clustering='draft standard', direct='draft', reference='16')),
     ]
 
 
