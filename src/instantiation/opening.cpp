@@ -13,6 +13,7 @@
 
 #include "instantiation/batches.hpp"
 #include "instantiation/closed_light.hpp"
+#include "instantiation/copy_rows.hpp"
 #include "instantiation/inside_gather.hpp"
 
 namespace sunfleck {
@@ -26,88 +27,35 @@ constexpr std::uint64_t fine_stream = 0x1b9e4d6a7c2f5083ULL;
 class Opening {
  public:
   Opening(SceneLight& s, const Light& total, IrradianceSink& sink, SolveReport& report)
-      : s_(s), total_(total), sink_(sink), report_(report) {}
+      : s_(s), total_(total), sink_(sink), report_(report), ordered_(sink) {}
 
   void open_all() {
     const auto ground_e = s_.ground_irradiance(&total_, true);  // before the fields change no more
-    std::uint32_t fine_of = no_parent;
-    std::unique_ptr<LineOperator> fine;
-    std::vector<std::uint32_t> opened, opened_of_original(s_.members.originals.size(), 0);
+    opened_of_original_.assign(s_.members.originals.size(), 0);
     for (std::uint32_t m = 0; m < s_.members.size(); ++m)
       if (s_.has_rows(m)) {
-        opened.push_back(m);
-        ++opened_of_original[s_.members.found.members[m].original];
+        opened_.push_back(m);
+        ++opened_of_original_[s_.members.found.members[m].original];
       }
+    left_of_original_ = opened_of_original_;
     const auto stood_for = copies_stood_for();
     forgets_ = stood_for.empty() && s_.placed.closed.empty();  // else others shade by it, or absorb by it
-    left_of_original_ = opened_of_original;
     std::size_t first = 0, next_own = 0;
-    while (first < opened.size() || next_own < stood_for.size()) {
+    while (first < opened_.size() || next_own < stood_for.size()) {
       // those that others stand in for come in their turn, one by one
-      if (next_own < stood_for.size() && (first == opened.size() || stood_for[next_own] < first_copy(opened[first]))) {
-        s_.progress.fraction("opening", static_cast<double>(next_own) / static_cast<double>(stood_for.size()));
-        open_own(stood_for[next_own++]);
+      const std::uint32_t own = next_own < stood_for.size() ? stood_for[next_own] : no_parent;
+      if (first == opened_.size() || own < first_copy(opened_[first])) {
+        s_.progress.fraction("opening", static_cast<double>(next_own++) / static_cast<double>(stood_for.size()));
+        open_own(own);
         continue;
       }
-      std::vector<std::uint32_t> window;
-      std::size_t bytes = 0;
-      s_.progress.fraction("opening", static_cast<double>(first) / static_cast<double>(opened.size()));
-      for (; first < opened.size() && (window.empty() || bytes < window_bytes); ++first) {
-        if (next_own < stood_for.size() && stood_for[next_own] < first_copy(opened[first])) break;
-        window.push_back(opened[first]);
-        bytes += s_.members.original_facets(opened[first]) * 2 * sizeof(float) * (s_.columns + s_.states);
-      }
-      auto batches = batches_of(s_, window);
-      for (std::size_t begin = 0; begin < batches.size();) {
-        std::size_t end = begin;
-        while (end < batches.size() && batches[end].original == batches[begin].original) ++end;
-        std::vector<std::vector<Balance>> partial(end - begin);
-        std::vector<Rows> rows(placed_rows(members_of(batches, begin, end)));
-        if (fine_of != batches[begin].original) {
-          fine.reset();
-          s_.memory.hold("fine", 0);
-          fine_of = batches[begin].original;
-          if (end - begin == 1 && opened_of_original[fine_of] == batches[begin].members.size()) {
-            open_once(batches[begin], rows, partial[0]);
-            add_balance(batches[begin], partial[0]);
-            send(rows);
-            opened_group(batches, begin, end);
-            begin = end;
-            fine_of = no_parent;
-            continue;
-          }
-          fine = std::make_unique<LineOperator>(s_.members.originals[fine_of].elements, s_.members.originals[fine_of].interior,
-                                                gather_density(s_.density, opened_of_original[fine_of]), mix(s_.seed, fine_stream, fine_of),
-                                                s_.progress, seen());
-          s_.memory.pass("fine", fine->built_with());
-          s_.memory.hold("fine", fine->bytes());
-        }
-        std::size_t ends_bytes = 0;
-        for (std::size_t q = begin; q < end; ++q)
-          ends_bytes = std::max(ends_bytes, batches[q].members.size() * fine->points.size() * sizeof(RayEnd));
-        s_.memory.pass("lanes", ends_bytes + lanes_at_once({batches.begin() + static_cast<std::ptrdiff_t>(begin),
-                                                            batches.begin() + static_cast<std::ptrdiff_t>(end)},
-                                                           [&](const Batch& b) { return lanes_of(b, *fine); }));
-        const auto runs = runs_of_members(batches, begin, end);
-        tbb::parallel_for(std::size_t{0}, runs.size(), [&](std::size_t r) {
-          if (s_.progress.cancelled()) return;
-          const auto [first_batch, last_batch] = std::pair(runs[r]);
-          std::vector<std::vector<RayEnd>> ends;  // once for all columns
-          for (const auto m : batches[first_batch].members) {
-            ends.emplace_back(fine->points.size());
-            s_.look_from(m, *fine, 0, fine->fields(), ends.back().data());
-          }
-          std::vector<const RayEnd*> fine_ends;
-          for (const auto& list : ends) fine_ends.push_back(list.data());
-          const std::size_t base = first_batch;
-          tbb::parallel_for(base, static_cast<std::size_t>(last_batch), [&](std::size_t q) {
-            open(batches[q], stored_ends(s_, batches[q]), *fine, fine_ends, rows, partial[q - begin]);
-          });
-        });
-        s_.progress.check();
-        for (std::size_t q = begin; q < end; ++q) add_balance(batches[q], partial[q - begin]);
-        send(rows);
-        opened_group(batches, begin, end);
+      s_.progress.fraction("opening", static_cast<double>(first) / static_cast<double>(opened_.size()));
+      const auto window = window_from(first, own);
+      first += window.size();
+      const auto batches = batches_of(s_, window);
+      for (auto begin = batches.begin(); begin != batches.end();) {
+        const auto end = std::find_if(begin, batches.end(), [&](const Batch& b) { return b.original != begin->original; });
+        open_group({begin, end});
         begin = end;
       }
     }
@@ -116,12 +64,73 @@ class Opening {
   }
 
  private:
-  /// Rows of one copy, as the sink takes them.
-  struct Rows {
-    std::size_t first = 0, count = 0;
-    std::vector<float> irradiance, sunlit;
-    std::size_t bytes() const { return bytes_of(irradiance) + bytes_of(sunlit); }
-  };
+  /// Members to open together from the first-th on, as far as their rows fit, and none whose copies come after `before`.
+  std::vector<std::uint32_t> window_from(std::size_t first, std::uint32_t before) const {
+    std::vector<std::uint32_t> window;
+    std::size_t bytes = 0;
+    for (; first < opened_.size() && (window.empty() || bytes < window_bytes) && first_copy(opened_[first]) < before; ++first) {
+      window.push_back(opened_[first]);
+      bytes += s_.members.original_facets(opened_[first]) * 2 * sizeof(float) * (s_.columns + s_.states);
+    }
+    return window;
+  }
+
+  /// Opens the batches of a window that share an original.
+  void open_group(const std::vector<Batch>& group) {
+    const std::uint32_t o = group.front().original;
+    const auto members = members_of(group);
+    auto rows = placed_rows(members);
+    std::vector<std::vector<Balance>> partial(group.size());
+    if (fine_of_ != o) {
+      fine_.reset();
+      fine_of_ = no_parent;
+      s_.memory.hold("fine", 0);
+    }
+    if (group.size() == 1 && opened_of_original_[o] == members.size())
+      open_once(group.front(), rows, partial.front());
+    else
+      open_shared(group, rows, partial);
+    s_.progress.check();
+    for (std::size_t q = 0; q < group.size(); ++q) add_balance(group[q], partial[q]);
+    send(rows);
+    auto& left = left_of_original_[o];
+    left -= static_cast<std::uint32_t>(members.size());
+    if (left > 0 || !forgets_) return;
+    s_.members.originals[o].forget();  // makes room for those to come
+    s_.memory.hold("originals", s_.members.bytes());
+  }
+
+  /// Opens batches along one fine operator, which is kept for those of the next window.
+  void open_shared(const std::vector<Batch>& group, std::vector<CopyRows>& rows, std::vector<std::vector<Balance>>& partial) {
+    if (!fine_) {
+      fine_of_ = group.front().original;
+      const auto& original = s_.members.originals[fine_of_];
+      fine_ =
+          std::make_unique<LineOperator>(original.elements, original.interior, gather_density(s_.density, opened_of_original_[fine_of_]),
+                                         mix(s_.seed, fine_stream, fine_of_), s_.progress, seen());
+      s_.memory.pass("fine", fine_->built_with());
+      s_.memory.hold("fine", fine_->bytes());
+    }
+    const LineOperator& fine = *fine_;
+    std::size_t most_members = 0;
+    for (const auto& b : group) most_members = std::max(most_members, b.members.size());
+    s_.memory.pass("lanes", most_members * fine.points.size() * sizeof(RayEnd) +
+                                lanes_at_once(group, [&](const Batch& b) { return lanes_of(b, fine); }));
+    const auto runs = runs_of_members(group, 0, group.size());
+    tbb::parallel_for(std::size_t{0}, runs.size(), [&](std::size_t r) {
+      if (s_.progress.cancelled()) return;
+      const auto [first_batch, last_batch] = std::pair(runs[r]);
+      std::vector<std::vector<RayEnd>> ends;  // once for all columns
+      for (const auto m : group[first_batch].members) {
+        ends.emplace_back(fine.points.size());
+        s_.look_from(m, fine, 0, fine.fields(), ends.back().data());
+      }
+      std::vector<const RayEnd*> fine_ends;
+      for (const auto& list : ends) fine_ends.push_back(list.data());
+      tbb::parallel_for(first_batch, last_batch,
+                        [&](std::size_t q) { open(group[q], stored_ends(s_, group[q]), fine, fine_ends, rows, partial[q]); });
+    });
+  }
 
   /// Copies with rows that others stand in for.
   std::vector<std::uint32_t> copies_stood_for() const {
@@ -134,18 +143,9 @@ class Opening {
     return out;
   }
 
-  /// An original whose last copy is opened makes room for those to come.
-  void opened_group(const std::vector<Batch>& batches, std::size_t begin, std::size_t end) {
-    auto& left = left_of_original_[batches[begin].original];
-    left -= static_cast<std::uint32_t>(members_of(batches, begin, end).size());
-    if (left > 0 || !forgets_) return;
-    s_.members.originals[batches[begin].original].forget();
-    s_.memory.hold("originals", s_.members.bytes());
-  }
-
-  static std::vector<std::uint32_t> members_of(const std::vector<Batch>& batches, std::size_t begin, std::size_t end) {
+  static std::vector<std::uint32_t> members_of(const std::vector<Batch>& batches) {
     std::vector<std::uint32_t> out;
-    for (const auto& [first, last] : runs_of_members(batches, begin, end))
+    for (const auto& [first, last] : runs_of_members(batches, 0, batches.size()))
       out.insert(out.end(), batches[first].members.begin(), batches[first].members.end());
     return out;
   }
@@ -172,7 +172,7 @@ class Opening {
   }
 
   /// What each structure of an opened copy absorbed that another had stood in for.
-  void add_pieces(std::uint32_t copy, const Rows& rows) {
+  void add_pieces(std::uint32_t copy, const CopyRows& rows) {
     const std::uint32_t p = s_.placed.plant_of(copy);
     const auto& entry = s_.scene.plants[p];
     const auto& piece_of = s_.members.approximation.piece_of[p];
@@ -200,32 +200,19 @@ class Opening {
     pieces_.push_back(std::move(out));
   }
 
-  /// Rows wait until those before them have been sent.
-  void send(std::vector<Rows>& rows) {
-    for (auto& r : rows)
-      if (r.count > 0) waiting_.emplace(r.first, std::move(r));
-    while (!waiting_.empty() && waiting_.begin()->first == next_row_) {
-      const Rows& r = waiting_.begin()->second;
-      sink_.rows({r.first, r.count, r.irradiance.data(), s_.lights.suns.empty() ? nullptr : r.sunlit.data(), nullptr});
-      next_row_ += r.count;
-      waiting_.erase(waiting_.begin());
-    }
-    s_.memory.hold("rows", waiting_bytes());
-  }
-  std::size_t waiting_bytes() const {
-    std::size_t total = 0;
-    for (const auto& [first, r] : waiting_) total += r.bytes();
-    return total;
+  void send(std::vector<CopyRows>& rows) {
+    ordered_.send(rows);
+    s_.memory.hold("rows", ordered_.bytes());
   }
 
   /// Space for the rows of the copies of the members, member by member, part by part.
-  std::vector<Rows> placed_rows(const std::vector<std::uint32_t>& members) {
-    std::vector<Rows> out;
+  std::vector<CopyRows> placed_rows(const std::vector<std::uint32_t>& members) {
+    std::vector<CopyRows> out;
     row_of_member_.clear();
     for (const auto m : members) {
       row_of_member_.emplace(m, out.size());
       for (const auto c : s_.members.found.members[m].copies) {
-        Rows r;
+        CopyRows r;
         if (c >= s_.placed.copies.size()) {  // solved together with one that is opened
           out.push_back(std::move(r));
           continue;
@@ -237,14 +224,14 @@ class Opening {
         out.push_back(std::move(r));
       }
     }
-    std::size_t bytes = waiting_bytes();
+    std::size_t bytes = ordered_.bytes();
     for (const auto& r : out) bytes += r.bytes();
     s_.memory.hold("rows", bytes);
     return out;
   }
 
   /// Opens the only batch of an original: the lines of the last gather are followed as they are traced, and never kept.
-  void open_once(const Batch& b, std::vector<Rows>& rows, std::vector<Balance>& balance) {
+  void open_once(const Batch& b, std::vector<CopyRows>& rows, std::vector<Balance>& balance) {
     with_width(b.width, [&](auto constant) {
       constexpr int width = decltype(constant)::value;
       const auto& original = s_.members.originals[b.original];
@@ -272,13 +259,13 @@ class Opening {
 
   /// `coarse_ends` are of the original's own operator, `fine_ends` of the one that light is gathered along; they may be the same.
   void open(const Batch& b, const std::vector<const RayEnd*>& coarse_ends, const LineOperator& fine,
-            const std::vector<const RayEnd*>& fine_ends, std::vector<Rows>& rows, std::vector<Balance>& balance) {
+            const std::vector<const RayEnd*>& fine_ends, std::vector<CopyRows>& rows, std::vector<Balance>& balance) {
     with_width(b.width, [&](auto constant) { open_lanes<decltype(constant)::value>(b, coarse_ends, fine, fine_ends, rows, balance); });
   }
 
   template <int width>
   void open_lanes(const Batch& b, const std::vector<const RayEnd*>& coarse_ends, const LineOperator& fine,
-                  const std::vector<const RayEnd*>& fine_ends, std::vector<Rows>& rows, std::vector<Balance>& balance) {
+                  const std::vector<const RayEnd*>& fine_ends, std::vector<CopyRows>& rows, std::vector<Balance>& balance) {
     const LaneField<width> radiosity = solved<width>(b, coarse_ends);
     const LaneField<width> cells = fine.seen() == LineOperator::Seen::cells ? on_cells<width>(b, radiosity) : LaneField<width>{};
     LaneField<width> inside(radiosity.size(), Lanes<width>{});
@@ -308,7 +295,7 @@ class Opening {
   /// Rows of a batch, from its radiosity and what elements gather of it inside.
   template <int width>
   void finish(const Batch& b, const LineOperator& fine, const std::vector<const RayEnd*>& fine_ends, const LaneField<width>& radiosity,
-              LaneField<width> scattered, std::vector<Rows>& rows, std::vector<Balance>& balance) {
+              LaneField<width> scattered, std::vector<CopyRows>& rows, std::vector<Balance>& balance) {
     LaneField<width> field, sky(radiosity.size(), Lanes<width>{});  // the sky's light apart, for the balance
     incoming<width>(s_, b, fine, fine_ends, nullptr, true, field);
     add_outside<width>(fine, field, sky);
@@ -376,7 +363,7 @@ class Opening {
 
   template <int width>
   void member_rows(const Batch& b, std::size_t j, const LineOperator& fine, const LaneField<width>& sky, const LaneField<width>& scattered,
-                   std::vector<Rows>& rows, std::size_t first_row, std::vector<Balance>& balance) {
+                   std::vector<CopyRows>& rows, std::size_t first_row, std::vector<Balance>& balance) {
     const std::uint32_t m = b.members[j];
     const auto& original = s_.members.originals[b.original];
     const auto& e = original.elements;
@@ -388,7 +375,7 @@ class Opening {
       if (s.split[t] == 0) continue;
       const std::uint32_t facet = e.order[t];
       const std::size_t part = original.part_of(facet);
-      Rows& out = rows[first_row + part];
+      CopyRows& out = rows[first_row + part];
       if (out.count == 0) continue;
       const std::size_t i = facet - original.facet_of_part[part];
       const std::uint32_t begin = s.first_cell[t], end = s.first_cell[t + 1];
@@ -476,11 +463,13 @@ class Opening {
   IrradianceSink& sink_;
   SolveReport& report_;
   std::map<std::uint32_t, std::size_t> row_of_member_;  ///< of the window
-  std::map<std::size_t, Rows> waiting_;
+  RowsInOrder ordered_;
   std::vector<OpenedPieces> pieces_;
-  std::size_t next_row_ = 0;
+  std::vector<std::uint32_t> opened_;                                 ///< members with rows
+  std::vector<std::uint32_t> opened_of_original_, left_of_original_;  ///< members with rows, and those of them that wait
   bool forgets_ = false;
-  std::vector<std::uint32_t> left_of_original_;  ///< copies to be opened
+  std::uint32_t fine_of_ = no_parent;  ///< the original that `fine_` is of
+  std::unique_ptr<LineOperator> fine_;
 };
 
 }  // namespace
