@@ -227,7 +227,7 @@ def full():
         SceneChoice('ten_poplars', 'ten poplars, 1.2 million facets, no two alike', of_repository('plants/ten_poplars.toml'), 16,
                     jobs(1, clustering='draft standard', instantiation='draft standard', direct='draft')),
         SceneChoice('canopy_1m', 'random canopy of 1,000,000 facets, periodic, LAI 3', canopy(1_000_000), 16,
-                    jobs(1, clustering='draft standard', direct='draft', reference='16')),
+                    jobs(1, clustering='draft standard', direct='draft')),
     ]
 
 
