@@ -108,9 +108,10 @@ void LineOperator::trace(const Elements& elements, const std::vector<std::uint8_
   const double area = std::accumulate(elements.area.begin(), elements.area.end(), 0.0);
   const double hits_of_direction = 0.5 * area / line_area;
   const auto fewest = static_cast<std::uint32_t>(std::max(std::size_t{4}, threads_at_work()));
+  constexpr auto streams = static_cast<std::uint32_t>(LineVisitor::streams);
   auto together =
       static_cast<std::uint32_t>(std::clamp(hits_together / std::max(hits_of_direction, 1.0), static_cast<double>(fewest), 65536.0));
-  if (visitor) together = (together + LineVisitor::streams - 1) / LineVisitor::streams * LineVisitor::streams;  // streams in order
+  if (visitor) together = (together + streams - 1) / streams * streams;  // streams in order
   for (std::uint32_t first = 0; first < directions_; first += together) {
     const std::uint32_t end = std::min(directions_, first + together);
     within.begin(end - first);
