@@ -45,11 +45,14 @@ test("mouse, wheel and keys turn, move and zoom", async () => {
   await settled(page);
   const canvas = page.locator("#pane-0 canvas"), box = await canvas.boundingBox();
   const changes = async (what, act) => {
-    const before = await look(page), frames = await page.evaluate(() => Number(document.querySelector("#pane-0 canvas").dataset.frames));
+    const before = await look(page), end = Date.now() + 20000;
     await act();
-    await page.waitForFunction((n) => Number(document.querySelector("#pane-0 canvas").dataset.frames) > n, frames);
-    await settled(page);
-    assert.ok(unlike(before, await look(page)) > 1, `${what} changes the picture`);
+    let change = 0;
+    do {  // on a busy machine the next frame may still refine the last view
+      await settled(page);
+      change = unlike(before, await look(page));
+    } while (change <= 1 && Date.now() < end);
+    assert.ok(change > 1, `${what} changes the picture`);
   };
   const drag = (button) => async () => {
     await page.mouse.move(box.x + 300, box.y + 300);
