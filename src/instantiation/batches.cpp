@@ -5,15 +5,19 @@
 
 namespace sunfleck {
 
+int batch_width(std::size_t lanes, std::size_t columns) {
+  int width = 2;  // two batches at least where there is work for them
+  while (width < 16 && static_cast<std::size_t>(2 * width) < lanes) width *= 2;
+  while (width < 16 && static_cast<std::size_t>(width) < std::min<std::size_t>(columns, 16)) width *= 2;
+  return width;
+}
+
 std::vector<Batch> batches_of(const SceneLight& s, const std::vector<std::uint32_t>& members) {
   std::map<std::uint32_t, std::vector<std::uint32_t>> by_original;
   for (const auto m : members) by_original[s.members.found.members[m].original].push_back(m);
   std::vector<Batch> out;
   for (const auto& [original, list] : by_original) {
-    const std::size_t lanes = list.size() * s.columns;
-    int width = 2;  // two batches at least where there is work for them
-    while (width < 16 && static_cast<std::size_t>(2 * width) < lanes) width *= 2;
-    while (width < 16 && static_cast<std::size_t>(width) < std::min<std::size_t>(s.columns, 16)) width *= 2;
+    const int width = batch_width(list.size() * s.columns, s.columns);
     const std::size_t columns = std::min<std::size_t>(s.columns, width), each = width / columns;
     for (std::size_t first = 0; first < list.size(); first += each)
       for (std::size_t c = 0; c < s.columns; c += columns) {

@@ -22,6 +22,9 @@ struct Batch {
   int width = 16;
 };
 
+/// Lanes that are worked on together where an original has so many, of so many columns a member.
+int batch_width(std::size_t lanes, std::size_t columns);
+
 /// Batches over the members given, members of one original together, in a fixed order.
 std::vector<Batch> batches_of(const SceneLight& s, const std::vector<std::uint32_t>& members);
 

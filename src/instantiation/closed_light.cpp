@@ -16,8 +16,6 @@ namespace sunfleck {
 
 namespace {
 
-constexpr std::uint32_t most_sweeps = 200;
-
 class ClosedLight {
  public:
   ClosedLight(const SceneLight& s, const Light& total) : s_(s), total_(total) {
@@ -72,8 +70,7 @@ class ClosedLight {
     source = direct;
     incoming<width>(s_, b, op, ends, &total_, false, field);
     add_outside<width>(op, field, source);
-    solve_inside<width>(op, e.material, optics_of<width>(s_, b), source, static_cast<float>(s_.density.inner_tolerance), most_sweeps,
-                        radiosity);
+    solve_inside<width>(op, e.material, optics_of<width>(s_, b), source, static_cast<float>(s_.density.inner_tolerance), radiosity);
     add_inside<width>(op, radiosity, source);
     for (std::size_t j = 0; j < b.members.size(); ++j) {
       add_facets<width>(b, j, direct, source);
@@ -190,6 +187,34 @@ class ClosedLight {
 };
 
 }  // namespace
+
+OpenedPieces opened_pieces(const SceneLight& s, std::uint32_t copy, const CopyRows& rows) {
+  const std::uint32_t p = s.placed.plant_of(copy);
+  const auto& entry = s.scene.plants[p];
+  const auto& piece_of = s.members.approximation.piece_of[p];
+  OpenedPieces out;
+  out.copy = copy;
+  out.area.assign(s.members.approximation.of_plant[p].size() + 1, 0.0);
+  out.absorbed.assign(out.area.size() * s.columns, 0.0);
+  const double scale = std::pow(std::fabs(glm::determinant(s.placed.map_of(copy).linear)), 2.0 / 3.0);
+  std::size_t i = 0;
+  for (std::size_t shape = 0; shape < entry.plant->shapes.size(); ++shape) {
+    const auto& piece = entry.plant->shapes[shape];
+    const std::size_t k = piece_of[piece.structure];
+    const auto& optics = s.scene.optics[entry.shape_optics[shape]];
+    for (std::uint32_t t = 0; t < piece.triangle_count; ++t, ++i) {
+      const double area = scale * glm::length(area_vector(shape_triangle(*entry.plant, piece, t)));
+      out.area[k] += area;
+      for (std::size_t c = 0; c < s.columns; ++c) {
+        const std::size_t state = c / s.bands, b = c % s.bands;
+        const float* sides = &rows.irradiance[((state * rows.count + i) * 2) * s.bands + b];
+        out.absorbed[k * s.columns + c] += area * ((1.0 - optics.reflectance_front[b] - optics.transmittance[b]) * sides[0] +
+                                                   (1.0 - optics.reflectance_back[b] - optics.transmittance[b]) * sides[s.bands]);
+      }
+    }
+  }
+  return out;
+}
 
 void judge_stand_ins(const SceneLight& s, const Light& light, const std::vector<OpenedPieces>& opened, SolveReport& report) {
   if (opened.empty()) return;

@@ -3,6 +3,7 @@
 
 #include <sunfleck/scene/solution.hpp>
 
+#include "instantiation/copy_rows.hpp"
 #include "instantiation/scene_light.hpp"
 
 namespace sunfleck {
@@ -17,6 +18,9 @@ struct OpenedPieces {
   std::vector<double> area;      ///< [pieces] one-sided [m^2]
   std::vector<double> absorbed;  ///< [pieces][columns] W
 };
+
+/// From the rows of an opened copy.
+OpenedPieces opened_pieces(const SceneLight& s, std::uint32_t copy, const CopyRows& rows);
 
 /// SolveReport::stand_in_rmse, stand_in_bias.
 void judge_stand_ins(const SceneLight& s, const Light& light, const std::vector<OpenedPieces>& opened, SolveReport& report);

@@ -18,17 +18,15 @@ class InsideGather : public LineVisitor {
  public:
   /// `light`: radiosity of sides of elements or of cells, as `seen` says.
   InsideGather(const Elements& elements, const LaneField<width>& light, LineOperator::Seen seen)
-      : elements_(elements), light_(light), cells_(seen == LineOperator::Seen::cells) {
+      : light_(light), cells_(seen == LineOperator::Seen::cells) {
     for (auto& sum : sums_) sum.assign(2 * elements.size(), Lanes<width>{});
   }
 
-  void lines(std::size_t stream, const std::vector<std::uint32_t>& along) override {
+  void lines(std::size_t stream, const std::vector<std::uint32_t>& up, const std::vector<std::uint32_t>& cell_side) override {
     auto& sum = sums_[stream];
-    const auto side_of = [&](std::uint32_t cell_side) { return 2 * elements_.element_of_cell[cell_side >> 1] + (cell_side & 1u); };
-    LineOperator::each_meeting(along, [&](std::uint32_t below, std::uint32_t above) {
-      const auto low = side_of(below), high = side_of(above);
-      sum[low].v += light_[cells_ ? above : high].v;
-      sum[high].v += light_[cells_ ? below : low].v;
+    LineOperator::each_meeting(up, [&](std::size_t k, std::uint32_t below, std::uint32_t above) {
+      sum[below].v += light_[cells_ ? cell_side[k] ^ 1u : above].v;
+      sum[above].v += light_[cells_ ? cell_side[k - 1] : below].v;
     });
   }
 
@@ -50,7 +48,6 @@ class InsideGather : public LineVisitor {
   }
 
  private:
-  const Elements& elements_;
   const LaneField<width>& light_;
   bool cells_;
   std::array<LaneField<width>, streams> sums_;

@@ -35,14 +35,11 @@ struct Traced {
 /// What one thread works in.
 struct Tracer {
   LineBundle bundle;
-  std::vector<std::uint32_t> up;     ///< side of an element of each hit, the upward one, with its marks
-  std::vector<std::uint32_t> along;  ///< side of a cell, the same
+  std::vector<std::uint32_t> up;  ///< side of an element of each hit, the upward one, with its marks
   std::vector<std::uint32_t> lines;
   std::vector<std::uint32_t> hits, inside_hits;  ///< of cells, where anything is enclosed
 
-  std::size_t bytes() const {
-    return bundle.bytes() + bytes_of(up) + bytes_of(along) + bytes_of(lines) + bytes_of(hits) + bytes_of(inside_hits);
-  }
+  std::size_t bytes() const { return bundle.bytes() + bytes_of(up) + bytes_of(lines) + bytes_of(hits) + bytes_of(inside_hits); }
 };
 
 void add_to(std::vector<std::uint32_t>& sum, const std::vector<std::uint32_t>& part) {
@@ -68,6 +65,11 @@ Vec3 from_octahedron(double x, double y) {
 }
 
 }  // namespace
+
+std::uint32_t directions_together(double hits_of_direction) {
+  const auto fewest = static_cast<double>(std::max(std::size_t{4}, threads_at_work()));
+  return static_cast<std::uint32_t>(std::clamp(hits_together / std::max(hits_of_direction, 1.0), fewest, 65536.0));
+}
 
 LineOperator::LineOperator(const Elements& elements, const std::vector<std::uint8_t>& interior, const OperatorDensity& density,
                            std::uint64_t seed, Progress& progress, Seen seen, LineVisitor* visitor)
@@ -107,10 +109,8 @@ void LineOperator::trace(const Elements& elements, const std::vector<std::uint8_
   // links do.
   const double area = std::accumulate(elements.area.begin(), elements.area.end(), 0.0);
   const double hits_of_direction = 0.5 * area / line_area;
-  const auto fewest = static_cast<std::uint32_t>(std::max(std::size_t{4}, threads_at_work()));
   constexpr auto streams = static_cast<std::uint32_t>(LineVisitor::streams);
-  auto together =
-      static_cast<std::uint32_t>(std::clamp(hits_together / std::max(hits_of_direction, 1.0), static_cast<double>(fewest), 65536.0));
+  auto together = directions_together(hits_of_direction);
   if (visitor) together = (together + streams - 1) / streams * streams;  // streams in order
   for (std::uint32_t first = 0; first < directions_; first += together) {
     const std::uint32_t end = std::min(directions_, first + together);
@@ -193,15 +193,11 @@ void LineOperator::trace(const Elements& elements, const std::vector<std::uint8_
         for (const auto& [side, field] : leaving) call(side, field);
       });
       if (visitor) {
-        tracer.along.resize(up.size());
-        for (std::size_t k = 0; k < up.size(); ++k) tracer.along[k] = bundle.side[k] | (up[k] & (line_begins | dark));
-        visitor->lines(d % LineVisitor::streams, tracer.along);
+        visitor->lines(d % LineVisitor::streams, up, bundle.side);
         return;
       }
       within.put(d - first, [&](auto&& call) {
-        for (std::size_t k = 1; k < up.size(); ++k) {
-          if ((up[k] & line_begins) || ((up[k] | up[k - 1]) & dark)) continue;
-          const std::uint32_t below = up[k - 1] & ~line_begins, above = up[k] ^ 1u;
+        each_meeting(up, [&](std::size_t k, std::uint32_t below, std::uint32_t above) {
           if (seen_ == Seen::cells) {
             call(below, bundle.side[k] ^ 1u);
             call(above, bundle.side[k - 1]);
@@ -209,7 +205,7 @@ void LineOperator::trace(const Elements& elements, const std::vector<std::uint8_
             call(below, above);
             call(above, below);
           }
-        }
+        });
       });
     };
     if (visitor)

@@ -21,8 +21,9 @@ class LineVisitor {
  public:
   static constexpr std::size_t streams = 8;
   virtual ~LineVisitor() = default;
-  /// `along`: for LineOperator::each_meeting().
-  virtual void lines(std::size_t stream, const std::vector<std::uint32_t>& along) = 0;
+  /// All hits of one direction, for LineOperator::each_meeting(). `up`: the upward side of the element of each, with marks; `cell_side`:
+  /// that of its cell.
+  virtual void lines(std::size_t stream, const std::vector<std::uint32_t>& up, const std::vector<std::uint32_t>& cell_side) = 0;
 };
 
 /// Element sides: 2 * element + (0 front, 1 back). Fields: (2 * direction + sense) * K^2 + pixel; sense 0 looks along the direction, 1
@@ -43,11 +44,11 @@ class LineOperator {
   LineOperator(const Elements& elements, const std::vector<std::uint8_t>& interior, const OperatorDensity& density, std::uint64_t seed,
                Progress& progress, Seen seen = Seen::elements, LineVisitor* visitor = nullptr);
 
-  /// Calls meet(below, above) for sides of cells that see each other along the lines of one direction.
+  /// Calls meet(k, below, above) for hits k - 1 and k of which sides see each other, `below` and `above` being those of their elements.
   template <class Meet>
-  static void each_meeting(const std::vector<std::uint32_t>& along, Meet&& meet) {
-    for (std::size_t k = 1; k < along.size(); ++k)
-      if (!(along[k] & line_begins) && !((along[k] | along[k - 1]) & dark)) meet(along[k - 1] & ~line_begins, along[k] ^ 1u);
+  static void each_meeting(const std::vector<std::uint32_t>& up, Meet&& meet) {
+    for (std::size_t k = 1; k < up.size(); ++k)
+      if (!(up[k] & line_begins) && !((up[k] | up[k - 1]) & dark)) meet(k, up[k - 1] & ~line_begins, up[k] ^ 1u);
   }
 
   Seen seen() const { return seen_; }
@@ -96,5 +97,8 @@ class LineOperator {
   std::vector<std::uint16_t> nearest_;  ///< sense by octahedral map
   std::size_t built_with_ = 0;
 };
+
+/// Directions whose links are merged together, where a direction's lines have so many hits.
+std::uint32_t directions_together(double hits_of_direction);
 
 }  // namespace sunfleck

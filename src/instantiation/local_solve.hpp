@@ -36,24 +36,26 @@ inline void add_row(const LinkRows& rows, std::size_t row, float share, const La
   });
 }
 
-/// out_i = sum_f n_if field_f / W_i: what comes in from outside.
+/// out_i += sum_j n_ij x_j / W_i over `rows` of the operator.
 template <int width>
-void add_outside(const LineOperator& op, const LaneField<width>& field, LaneField<width>& out) {
+void add_rows(const LineOperator& op, const LinkRows& rows, const LaneField<width>& x, LaneField<width>& out) {
   for (std::size_t i = 0; i < op.lines.size(); ++i) {
     if (op.lines[i] == 0) continue;
     const float share = 1.0f / static_cast<float>(op.lines[i]);
-    for (std::size_t side = 2 * i; side < 2 * i + 2; ++side) add_row<width>(op.outside, side, share, field.data(), out[side]);
+    for (std::size_t side = 2 * i; side < 2 * i + 2; ++side) add_row<width>(rows, side, share, x.data(), out[side]);
   }
 }
 
-/// out_i += sum_j n_ij x_j / W_i: what comes from inside. `x`: by what the operator's columns are.
+/// What comes in from outside, by fields.
+template <int width>
+void add_outside(const LineOperator& op, const LaneField<width>& field, LaneField<width>& out) {
+  add_rows<width>(op, op.outside, field, out);
+}
+
+/// What comes from inside. `x`: by what the operator's columns are.
 template <int width>
 void add_inside(const LineOperator& op, const LaneField<width>& x, LaneField<width>& out) {
-  for (std::size_t i = 0; i < op.lines.size(); ++i) {
-    if (op.lines[i] == 0) continue;
-    const float share = 1.0f / static_cast<float>(op.lines[i]);
-    for (std::size_t side = 2 * i; side < 2 * i + 2; ++side) add_row<width>(op.inside, side, share, x.data(), out[side]);
-  }
+  add_rows<width>(op, op.inside, x, out);
 }
 
 /// field_f = sum_i n_if B_i / n_f: what goes out. Fields that no line leaves through take the mean of their direction.
@@ -90,7 +92,8 @@ struct SweepReport {
 /// B = R (E0 + F B) by symmetric Gauss-Seidel sweeps: elements forth, then back, both sides of one together. `material` row of `optics`.
 template <int width>
 SweepReport solve_inside(const LineOperator& op, const std::vector<std::uint32_t>& material, const std::vector<LaneOptics<width>>& optics,
-                         const LaneField<width>& source, float tolerance, std::uint32_t most_sweeps, LaneField<width>& radiosity) {
+                         const LaneField<width>& source, float tolerance, LaneField<width>& radiosity) {
+  constexpr std::uint32_t most_sweeps = 200;
   using Vector = typename Lanes<width>::Vector;
   radiosity.assign(source.size(), Lanes<width>{});
   SweepReport report;

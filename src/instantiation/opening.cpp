@@ -14,14 +14,13 @@
 #include "instantiation/batches.hpp"
 #include "instantiation/closed_light.hpp"
 #include "instantiation/copy_rows.hpp"
+#include "instantiation/ground_rows.hpp"
 #include "instantiation/inside_gather.hpp"
 
 namespace sunfleck {
 
 namespace {
 
-constexpr std::uint32_t most_sweeps = 200;
-constexpr std::size_t window_bytes = std::size_t{96} << 20;  // rows of finished copies that wait for their turn
 constexpr std::uint64_t fine_stream = 0x1b9e4d6a7c2f5083ULL;
 
 class Opening {
@@ -59,7 +58,7 @@ class Opening {
         begin = end;
       }
     }
-    write_ground(ground_e);
+    write_ground_rows(s_, ground_e, sink_, report_);
     judge_stand_ins(s_, total_, pieces_, report_);
   }
 
@@ -68,7 +67,7 @@ class Opening {
   std::vector<std::uint32_t> window_from(std::size_t first, std::uint32_t before) const {
     std::vector<std::uint32_t> window;
     std::size_t bytes = 0;
-    for (; first < opened_.size() && (window.empty() || bytes < window_bytes) && first_copy(opened_[first]) < before; ++first) {
+    for (; first < opened_.size() && (window.empty() || bytes < opening_window_bytes) && first_copy(opened_[first]) < before; ++first) {
       window.push_back(opened_[first]);
       bytes += s_.members.original_facets(opened_[first]) * 2 * sizeof(float) * (s_.columns + s_.states);
     }
@@ -132,6 +131,15 @@ class Opening {
     });
   }
 
+  /// Where the rays of a member end that is looked at along `op`, on all cores.
+  std::vector<RayEnd> ends_of(std::uint32_t m, const LineOperator& op) const {
+    std::vector<RayEnd> ends(op.points.size());
+    const std::size_t pixels = std::size_t{op.pixels()} * op.pixels();
+    tbb::parallel_for(std::size_t{0}, op.fields() / pixels,
+                      [&](std::size_t sense) { s_.look_from(m, op, sense * pixels, (sense + 1) * pixels, ends.data()); });
+    return ends;
+  }
+
   /// Copies with rows that others stand in for.
   std::vector<std::uint32_t> copies_stood_for() const {
     std::vector<std::uint32_t> out;
@@ -155,10 +163,7 @@ class Opening {
   void open_own(std::uint32_t copy) {
     const std::uint32_t own = s_.begin_own(copy);
     const LineOperator& op = s_.members.coarse_of(own);
-    std::vector<RayEnd> ends(op.points.size());
-    const std::size_t pixels = std::size_t{op.pixels()} * op.pixels();
-    tbb::parallel_for(std::size_t{0}, op.fields() / pixels,
-                      [&](std::size_t sense) { s_.look_from(own, op, sense * pixels, (sense + 1) * pixels, ends.data()); });
+    const auto ends = ends_of(own, op);
     auto rows = placed_rows({own});
     const auto batches = batches_of(s_, {own});
     std::vector<std::vector<Balance>> partial(batches.size());
@@ -167,37 +172,8 @@ class Opening {
     s_.progress.check();
     for (std::size_t q = 0; q < batches.size(); ++q) add_balance(batches[q], partial[q]);
     s_.end_own();
-    add_pieces(copy, rows.front());
+    pieces_.push_back(opened_pieces(s_, copy, rows.front()));
     send(rows);
-  }
-
-  /// What each structure of an opened copy absorbed that another had stood in for.
-  void add_pieces(std::uint32_t copy, const CopyRows& rows) {
-    const std::uint32_t p = s_.placed.plant_of(copy);
-    const auto& entry = s_.scene.plants[p];
-    const auto& piece_of = s_.members.approximation.piece_of[p];
-    OpenedPieces out;
-    out.copy = copy;
-    out.area.assign(s_.members.approximation.of_plant[p].size() + 1, 0.0);
-    out.absorbed.assign(out.area.size() * s_.columns, 0.0);
-    const double scale = std::pow(std::fabs(glm::determinant(s_.placed.map_of(copy).linear)), 2.0 / 3.0);
-    std::size_t i = 0;
-    for (std::size_t shape = 0; shape < entry.plant->shapes.size(); ++shape) {
-      const auto& piece = entry.plant->shapes[shape];
-      const std::size_t k = piece_of[piece.structure];
-      const auto& optics = s_.scene.optics[entry.shape_optics[shape]];
-      for (std::uint32_t t = 0; t < piece.triangle_count; ++t, ++i) {
-        const double area = scale * glm::length(area_vector(shape_triangle(*entry.plant, piece, t)));
-        out.area[k] += area;
-        for (std::size_t c = 0; c < s_.columns; ++c) {
-          const std::size_t state = c / s_.bands, b = c % s_.bands;
-          const float* sides = &rows.irradiance[((state * rows.count + i) * 2) * s_.bands + b];
-          out.absorbed[k * s_.columns + c] += area * ((1.0 - optics.reflectance_front[b] - optics.transmittance[b]) * sides[0] +
-                                                      (1.0 - optics.reflectance_back[b] - optics.transmittance[b]) * sides[s_.bands]);
-        }
-      }
-    }
-    pieces_.push_back(std::move(out));
   }
 
   void send(std::vector<CopyRows>& rows) {
@@ -244,13 +220,9 @@ class Opening {
       s_.memory.pass("lanes", sizeof(float) * width * lanes_of(b, fine));
       std::vector<std::vector<RayEnd>> ends;
       std::vector<const RayEnd*> fine_ends;
-      const std::size_t pixels = std::size_t{fine.pixels()} * fine.pixels();
       for (const auto m : b.members) {
-        ends.emplace_back(fine.points.size());
-        auto* found = ends.back().data();
-        tbb::parallel_for(std::size_t{0}, fine.fields() / pixels,
-                          [&](std::size_t sense) { s_.look_from(m, fine, sense * pixels, (sense + 1) * pixels, found); });
-        fine_ends.push_back(found);
+        ends.push_back(ends_of(m, fine));
+        fine_ends.push_back(ends.back().data());
       }
       s_.progress.check();
       finish<width>(b, fine, fine_ends, radiosity, gather.mean(fine), rows, balance);
@@ -288,7 +260,7 @@ class Opening {
     add_outside<width>(*original.coarse, field, source);
     add_sun<width>(s_, b, source);
     solve_inside<width>(*original.coarse, original.elements.material, optics_of<width>(s_, b), source,
-                        static_cast<float>(s_.density.inner_tolerance), most_sweeps, radiosity);
+                        static_cast<float>(s_.density.inner_tolerance), radiosity);
     return radiosity;
   }
 
@@ -426,36 +398,6 @@ class Opening {
       out.leaves += partial[c].leaves;
       out.escaped += partial[c].escaped;
     }
-  }
-
-  void write_ground(const std::vector<float>& e) {
-    const std::size_t n = s_.placed.ground.size();
-    if (n == 0) return;
-    std::vector<float> b = e;
-    s_.reflect_from_ground(b);
-    const auto& optics = s_.scene.ground->optics;
-    const std::size_t parts = std::size_t{s_.members.ground_split} * s_.members.ground_split;
-    const float share = 1.0f / static_cast<float>(parts);
-    std::vector<float> irradiance(s_.states * n * 2 * s_.bands, 0.0f), sunlit(s_.lights.suns.empty() ? 0 : s_.states * n * 2, 0.0f);
-    for (std::size_t part = 0; part < n * parts; ++part)
-      for (std::size_t c = 0; c < s_.columns; ++c) {
-        const std::size_t f = part / parts, state = c / s_.bands, band = c % s_.bands;
-        auto& balance = report_.balance[state][band];
-        for (std::size_t side = 0; side < 2; ++side) {
-          const std::size_t i = 2 * part + side;
-          const float value = e[i * s_.columns + c];
-          irradiance[((state * n + f) * 2 + side) * s_.bands + band] += share * value;
-          const double area = s_.ground.area[part];
-          balance.incident += area * s_.ground_direct(i, c);
-          balance.ground +=
-              area * value *
-              (1.0 - (side == 0 ? optics.reflectance_front[band] : optics.reflectance_back[band]) - optics.transmittance[band]);
-          balance.escaped += area * b[i * s_.columns + c] * s_.ground.sky_seen[i];
-          if (const auto sun = s_.lights.sun_of_state[state]; sun != LightSources::none && band == 0)
-            sunlit[(state * n + f) * 2 + side] += share * s_.ground.sunlit[sun][i];
-        }
-      }
-    sink_.rows({s_.placed.first_ground_facet, n, irradiance.data(), s_.lights.suns.empty() ? nullptr : sunlit.data(), nullptr});
   }
 
   SceneLight& s_;

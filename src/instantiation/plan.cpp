@@ -8,7 +8,9 @@
 #include <sunfleck/light/light_sources.hpp>
 #include <sunfleck/scene/counts.hpp>
 
+#include "instantiation/batches.hpp"
 #include "instantiation/members.hpp"
+#include "instantiation/opening.hpp"
 #include "instantiation/surroundings.hpp"
 #include "instantiation/threads.hpp"
 
@@ -77,7 +79,7 @@ InstantiationPlan plan_instantiation(const Scene& scene, const PlacedScene& plac
   // lists of links, 6 bytes each, of some directions, and a bundle of lines a thread
   const auto to_make = [&](const Elements& e, const OperatorDensity& d) {
     const double hits = 0.5 * std::accumulate(e.area.begin(), e.area.end(), 0.0) / (0.5 * e.organ_area / d.lines_per_organ);
-    const double together = std::min<double>(d.directions, std::max({4.0, threads, 1e6 / std::max(hits, 1.0)}));
+    const double together = std::min(d.directions, directions_together(hits));
     return hits * (together * 2 * 6 + threads * 60);
   };
   std::vector<std::uint64_t> copies(members.originals.size(), 0), opened(copies);
@@ -97,7 +99,7 @@ InstantiationPlan plan_instantiation(const Scene& scene, const PlacedScene& plac
     const OperatorDensity gather = gather_density(density, opened[k]);
     const double all_fine = bytes_of_operator(few, *o.coarse, gather, 2 * o.elements.surface.cells(), fine_links);
     const auto of_copies = static_cast<double>(copies[k] * columns);
-    const double width = std::clamp(std::exp2(std::ceil(std::log2(std::max(of_copies / 2, 1.0)))), 2.0, 16.0);
+    const double width = batch_width(copies[k] * columns, columns);
     const double side_lanes = 4 * width * 2 * static_cast<double>(o.elements.size()),
                  cells = 4 * width * 2 * static_cast<double>(o.elements.surface.cells());
     const bool once = of_copies <= width;  // then its lines are followed and not kept
@@ -108,7 +110,7 @@ InstantiationPlan plan_instantiation(const Scene& scene, const PlacedScene& plac
     lanes = std::max(lanes, std::min(threads, std::ceil(of_copies / width)) * (3 * side_lanes + cells));
     const auto facets = static_cast<double>(members.found.originals[k].facets);
     rows = std::max(rows, std::min(static_cast<double>(copies[k]) * facets * 8 * static_cast<double>(columns + scene.states.size()),
-                                   double{96u << 20}));
+                                   double{opening_window_bytes}));
     links += coarse_links;
     plan.elements += o.elements.size();
   }

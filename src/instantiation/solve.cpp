@@ -21,8 +21,6 @@ namespace sunfleck {
 
 namespace {
 
-constexpr std::uint32_t most_sweeps = 200;
-
 std::uint64_t report_originals(const SceneLight& s, SolveReport& report) {
   std::uint64_t elements = 0, links = 0;
   for (const auto& o : s.members.originals) {
@@ -57,7 +55,7 @@ std::uint64_t pass(const SceneLight& s, const std::vector<Batch>& batches, const
       add_outside<width>(op, field, source);
       if (direct) add_sun<width>(s, b, source);
       const auto swept = solve_inside<width>(op, original.elements.material, optics_of<width>(s, b), source,
-                                             static_cast<float>((direct ? 1.0 : 5.0) * s.density.inner_tolerance), most_sweeps, radiosity);
+                                             static_cast<float>((direct ? 1.0 : 5.0) * s.density.inner_tolerance), radiosity);
       sweeps[q] = swept.sweeps;
       outgoing<width>(op, radiosity, field);
       for (std::size_t j = 0; j < b.members.size(); ++j)

@@ -54,7 +54,8 @@ TEST_CASE("rays meet the same facets in trees of trees as in one tree", "[view]"
   const FacetScene flat = stored_scene(result);
   const DrawnScene drawn(result);
   const RayScene reference(flat);
-  const std::size_t written_out = GENERATE(std::size_t{PlacedRays::most_written_out}, std::size_t{0});  // whole plants, or leaves as copies in plants
+  const std::size_t written_out =
+      GENERATE(std::size_t{PlacedRays::most_written_out}, std::size_t{0});  // whole plants, or leaves as copies in plants
   const PlacedRays placed(drawn, written_out);
   int hits = 0, different = 0;
   const auto rays = rays_through(flat.bounds, 20000);
