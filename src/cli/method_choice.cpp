@@ -8,6 +8,7 @@
 #include <sunfleck/core/error.hpp>
 #include <sunfleck/core/names.hpp>
 #include <sunfleck/instantiation/plan.hpp>
+#include <sunfleck/policy/policy_toml.hpp>
 
 #include "cli/text_units.hpp"
 
@@ -66,7 +67,9 @@ MethodReason default_method(const Scene& scene, Quality quality, Progress& progr
   if (!repeats(scene)) return {"clustering", "too little repeats for instantiation to pay"};
   InstantiationSettings settings;
   settings.density = instantiation_density(quality);
-  const auto plan = plan_instantiation(scene, place(scene), settings, progress);
+  const auto classes = classes_of_policies(scene);
+  settings.classes = classes ? &*classes : nullptr;
+  const auto plan = plan_sharing(scene, place(scene), settings, progress);
   if (plan.tangled > most_tangled)
     return {"clustering",
             fmt::format("{:.1f} % of what is seen inside plants is hidden by others that reach into them: too much for instantiation",

@@ -72,6 +72,9 @@ void define_plan(CLI::App& verb, PlanOptions& o) {
   verb.add_option("SCENE", o.scene, "scene file, TOML")->required()->type_name("");
   verb.add_option("--method", o.method, method_help)->type_name("NAME");
   verb.add_option("--quality", o.quality, quality_help)->type_name("NAME")->check(one_of(qualities));
+  verb.add_option("--threads", o.threads, "threads that the solve will use; 0 is all cores. More threads hold more memory")
+      ->type_name("N")
+      ->check(count_from(0, 4096));
   verb.add_flag("--json", o.json, "print JSON instead of text");
   verb.footer(
       "Examples:\n"

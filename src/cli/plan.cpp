@@ -6,6 +6,7 @@
 
 #include <sunfleck/core/names.hpp>
 #include <sunfleck/instantiation/plan.hpp>
+#include <sunfleck/policy/policy_toml.hpp>
 #include <sunfleck/radiosity/plan.hpp>
 #include <sunfleck/scene/facets.hpp>
 
@@ -142,40 +143,73 @@ void add_certificate(const Scene& scene, const std::string& method, std::vector<
 /// solve.
 constexpr std::uint64_t most_laid_out = 20'000'000;
 
-using PartNames = std::vector<std::pair<std::string, std::string>>;  ///< a part as solvers name it, and for people
+using Names = std::vector<std::pair<std::string, std::string>>;  ///< a figure as solvers name it, and for people
 
-void add_memory(const std::vector<std::pair<std::string, std::uint64_t>>& predicted, const PartNames& names, Plan& plan) {
-  for (const auto& [part, bytes] : predicted)
+void add_figures(const std::vector<std::pair<std::string, std::uint64_t>>& predicted, const Names& names, std::vector<PlanFigure>& out) {
+  for (const auto& [part, amount] : predicted)
     for (const auto& [name, text] : names)
-      if (name == part) plan.memory.emplace_back(text, bytes);
+      if (name == part) out.push_back({part, text, amount});
+}
+
+/// Structures that others stand in for until their plant is opened.
+void add_policies(const Scene& scene, const InstantiationSharing& shared, std::vector<PlanItem>& items) {
+  if (shared.structures > 0) {
+    items.push_back({"policies", true,
+                     fmt::format("{} of {} that {} opened alone: {} of {} stand for them until then",
+                                 counted(shared.structures, "structure", "structures"), counted(shared.opened_alone, "plant", "plants"),
+                                 shared.opened_alone == 1 ? "is" : "are", counted(shared.copies_of_pieces, "copy", "copies"),
+                                 counted(shared.pieces, "piece", "pieces"))});
+    return;
+  }
+  const bool any = std::any_of(scene.plants.begin(), scene.plants.end(), [](const auto& p) { return !p.policy_file.empty(); });
+  items.push_back({"policies", false,
+                   !any             ? "no plant names one: all share their own geometry alone"
+                   : scene.periodic ? "in a periodic cell plants share their own geometry alone"
+                                    : "no plant that stands once has structures of a class of its policy"});
 }
 
 /// Originals, their operators, and what copies hold.
-void add_instantiation(const Scene& scene, const MethodChoice& choice, Progress& progress, Plan& plan) {
+void add_instantiation(const Scene& scene, const MethodChoice& choice, int threads, Progress& progress, Plan& plan) {
   const PlacedScene placed = place(scene);
   InstantiationSettings settings;
   settings.density = instantiation_density(choice.quality);
+  settings.threads = threads;
+  if (scene.solve.seed) settings.seed = *scene.solve.seed;
+  const auto classes = classes_of_policies(scene);
+  settings.classes = classes ? &*classes : nullptr;
   const auto predicted = plan_instantiation(scene, placed, settings, progress);
   plan.items.push_back({"originals", true,
                         fmt::format("{} shared by {}: traced once, opened copy by copy",
                                     counted(predicted.originals, "original", "originals"), counted(predicted.copies, "copy", "copies"))});
+  add_policies(scene, predicted, plan.items);
   if (predicted.merged_copies > 0)
     plan.items.push_back(
         {"overlap", true,
          fmt::format("{} that reach into each other are solved together", counted(predicted.merged_copies, "copy", "copies"))});
   else
     plan.items.push_back({"overlap", false, "no copies reach so far into each other that they must be solved together"});
-  static const PartNames names{{"originals", "originals and their operators"},
-                               {"sun", "sunlit fractions of all cells"},
-                               {"rays", "rays between copies"},
-                               {"fields", "fields of light between copies"},
-                               {"lanes", "light inside copies that are worked on"},
-                               {"rows", "rows that wait for the file"},
-                               {"fine", "the original being opened, with its operator in the making"}};
-  add_memory(predicted.memory, names, plan);
-  plan.work.emplace_back("elements of originals", predicted.elements);
-  plan.work.emplace_back("links of originals", predicted.links);
-  plan.work.emplace_back("copies opened", predicted.copies);
+  static const Names parts{{"plants", "plants as read"},
+                           {"originals", "originals and their operators"},
+                           {"sun", "sunlit fractions of all cells"},
+                           {"rays", "rays between copies"},
+                           {"lanes", "light inside copies that are worked on"},
+                           {"fields", "fields of light between copies"},
+                           {"fine", "the original being opened, with its operator"},
+                           {"rows", "rows that wait for the file"}};
+  static const Names counts{{"originals", "originals"},
+                            {"copies", "copies and pieces of copies"},
+                            {"merged_copies", "copies solved together"},
+                            {"elements", "elements of originals"},
+                            {"links", "links of originals"},
+                            {"line_fragments", "lines meet surfaces, in originals"},
+                            {"rays", "rays between copies"},
+                            {"sun_fragments", "lines meet surfaces, sun"},
+                            {"gather_fragments", "lines meet surfaces, last gather"},
+                            {"gather_rays", "rays, last gather"}};
+  add_figures(predicted.memory, parts, plan.memory);
+  add_figures(predicted.counts, counts, plan.work);
+  for (const auto& [name, bytes] : predicted.memory)
+    if (name == "at_once") plan.at_once = bytes;
 }
 
 /// Elements, links and lines of the radiosity methods.
@@ -197,33 +231,38 @@ void add_radiosity(const Scene& scene, const MethodChoice& choice, Progress& pro
     return;
   }
   const auto predicted = plan_radiosity(scene, facets, settings, progress);
-  static const PartNames names{{"elements", "elements and cells"},
-                               {"direct", "direct light on every cell"},
-                               {"tree of rays", "tree of rays, for lamps and sensors"},
-                               {"lamps", "light of lamps on every cell"},
-                               {"links", "links and clusters"},
-                               {"fields", "light on elements, iteration"},
-                               {"lines", "lines, until they are links"}};
-  add_memory(predicted.memory, names, plan);
-  plan.work.emplace_back("cells, with direct light", predicted.cells);
-  plan.work.emplace_back("elements, with scattered light", predicted.elements);
-  if (predicted.sky_fragments > 0) plan.work.emplace_back("lines meet surfaces, sky", predicted.sky_fragments);
-  if (predicted.sun_fragments > 0) plan.work.emplace_back("lines meet surfaces, sun", predicted.sun_fragments);
+  static const Names names{{"elements", "elements and cells"},
+                           {"direct", "direct light on every cell"},
+                           {"tree of rays", "tree of rays, for lamps and sensors"},
+                           {"lamps", "light of lamps on every cell"},
+                           {"links", "links and clusters"},
+                           {"fields", "light on elements, iteration"},
+                           {"lines", "lines, until they are links"}};
+  add_figures(predicted.memory, names, plan.memory);
+  const auto add = [&](const char* name, const char* what, std::uint64_t n) {
+    if (n > 0) plan.work.push_back({name, what, n});
+  };
+  add("cells", "cells, with direct light", predicted.cells);
+  add("elements", "elements, with scattered light", predicted.elements);
+  add("direct_fragments", "lines meet surfaces, sun and sky", predicted.sky_fragments + predicted.sun_fragments);
+  add("lamp_rays", "rays to lamps", predicted.lamp_rays);
+  add("sensor_rays", "rays of sensors", predicted.sensor_rays);
   if (choice.method == "direct") return;
-  if (predicted.line_fragments > 0) plan.work.emplace_back("lines meet surfaces, scattering", predicted.line_fragments);
-  if (predicted.clusters > 0) plan.work.emplace_back("clusters", predicted.clusters);
-  if (predicted.links > 0) plan.work.emplace_back("links", predicted.links);
+  add("fragments", "lines meet surfaces, scattering", predicted.line_fragments);
+  add("clusters", "clusters", predicted.clusters);
+  add("links", "links", predicted.links);
 }
 
 }  // namespace
 
 std::uint64_t Plan::memory_total() const {
+  if (at_once > 0) return at_once;
   std::uint64_t total = 0;
-  for (const auto& [part, bytes] : memory) total += bytes;
+  for (const auto& part : memory) total += part.amount;
   return total;
 }
 
-Plan make_plan(const Scene& scene, const MethodChoice& choice, Progress& progress) {
+Plan make_plan(const Scene& scene, const MethodChoice& choice, Progress& progress, std::uint64_t program, int threads) {
   Plan plan;
   plan.choice = choice;
   plan.counts = count(scene);
@@ -234,17 +273,20 @@ Plan make_plan(const Scene& scene, const MethodChoice& choice, Progress& progres
   add_certificate(scene, choice.method, plan.items);
   const std::uint64_t facets = plan.counts.facets();
   const bool shares = choice.method == "instantiation";
-  plan.memory = {{"plants as read", held_bytes(scene)}};
+  if (program > 0) plan.memory.push_back({"program", "the program as it starts", program});
   if (!shares) {
-    plan.memory.emplace_back("facets of all copies", facets * expanded_bytes_per_facet());
-    plan.memory.emplace_back("light on every facet", facets * solution_bytes_per_facet(scene));
+    plan.memory.push_back({"plants", "plants as read", held_bytes(scene)});
+    plan.memory.push_back({"facets", "facets of all copies", facets * expanded_bytes_per_facet()});
+    plan.memory.push_back({"light", "light on every facet", facets * solution_bytes_per_facet(scene)});
   }
-  plan.work = {
-      {"facets", facets}, {"organs", plan.counts.organs}, {"result bytes before compression", facets * result_bytes_per_facet(scene)}};
+  plan.work = {{"facets", "facets", facets},
+               {"organs", "organs", plan.counts.organs},
+               {"result_bytes", "result bytes before compression", facets * result_bytes_per_facet(scene)}};
   if (shares)
-    add_instantiation(scene, choice, progress, plan);
+    add_instantiation(scene, choice, threads, progress, plan);
   else
     add_radiosity(scene, choice, progress, plan);
+  if (plan.at_once > 0) plan.at_once += program;
   return plan;
 }
 

@@ -20,16 +20,26 @@ struct PlanItem {
   std::string why;  ///< what is done, or why it is left out
 };
 
+/// A part of the memory or of the work, predicted.
+struct PlanFigure {
+  std::string name;  ///< as a result has it in /memory or /counts, where it counts the same
+  std::string what;
+  std::uint64_t amount = 0;
+};
+
 struct Plan {
   MethodChoice choice;
   SceneCounts counts;
   std::vector<PlanItem> items;
-  std::vector<std::pair<std::string, std::uint64_t>> memory;  ///< bytes per part, predicted; not all are held at the same time
-  std::vector<std::pair<std::string, std::uint64_t>> work;    ///< predicted counts
+  std::vector<PlanFigure> memory;  ///< bytes per part; not all are held at the same time
+  std::vector<PlanFigure> work;
+  std::uint64_t at_once = 0;  ///< the most bytes of all parts at one time; 0 if that is not known
+  /// The most at one time, or where that is not known the sum of all parts.
   std::uint64_t memory_total() const;
 };
 
-/// Lays the scene's copies out (up to 20 million facets) and traces a pilot of few lines to predict links.
-Plan make_plan(const Scene& scene, const MethodChoice& choice, Progress& progress);
+/// Lays the scene's copies out (up to 20 million facets; instantiation: its originals) and traces a pilot of few lines to predict links.
+/// `program`: bytes that the process held before it read anything. `threads`: of the solve that is planned; 0 is all cores.
+Plan make_plan(const Scene& scene, const MethodChoice& choice, Progress& progress, std::uint64_t program = 0, int threads = 0);
 
 }  // namespace sunfleck

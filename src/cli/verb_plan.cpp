@@ -1,10 +1,13 @@
 #include <sunfleck/cli/verbs.hpp>
 
 #include <algorithm>
+#include <optional>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
+#include <tbb/global_control.h>
 
+#include <sunfleck/core/memory.hpp>
 #include <sunfleck/format/scene_toml.hpp>
 
 #include "cli/plan.hpp"
@@ -25,9 +28,9 @@ nlohmann::ordered_json json_of(const Scene& scene, const Plan& plan) {
   json["organs"] = plan.counts.organs;
   for (const char* list : {"done", "left_out"}) json[list] = nlohmann::ordered_json::object();
   for (const auto& item : plan.items) json[item.done ? "done" : "left_out"][item.name] = item.why;
-  for (const auto& [part, bytes] : plan.memory) json["memory_bytes"][part] = bytes;
-  json["memory_bytes"]["total"] = plan.memory_total();
-  for (const auto& [name, amount] : plan.work) json["work"][name] = amount;
+  for (const auto& part : plan.memory) json["memory_bytes"][part.name] = part.amount;
+  json["memory_bytes"][plan.at_once > 0 ? "at_once" : "total"] = plan.memory_total();
+  for (const auto& figure : plan.work) json["work"][figure.name] = figure.amount;
   json["notes"] = scene.notes;
   return json;
 }
@@ -49,19 +52,28 @@ void print_text(const Scene& scene, const Plan& plan) {
   fmt::print("left out\n");
   print_items(plan, false);
   fmt::print("predicted memory\n");
-  for (const auto& [part, bytes] : plan.memory) fmt::print("  {:<32} {:>10}\n", part, bytes_text(static_cast<double>(bytes)));
-  fmt::print("  {:<32} {:>10}\n", "in all, at most", bytes_text(static_cast<double>(plan.memory_total())));
+  const auto print_bytes = [](const std::string& name, std::uint64_t bytes, const std::string& what) {
+    fmt::print("  {:<16} {:>12}  {}\n", name, bytes_text(static_cast<double>(bytes)), what);
+  };
+  for (const auto& part : plan.memory) print_bytes(part.name, part.amount, part.what);
+  if (plan.at_once > 0)
+    print_bytes("at_once", plan.memory_total(), "the most at one time");
+  else
+    print_bytes("total", plan.memory_total(), "in all, at most");
   fmt::print("predicted work\n");
-  for (const auto& [name, amount] : plan.work) fmt::print("  {:<32} {:>10}\n", name, amount);
+  for (const auto& figure : plan.work) fmt::print("  {:<16} {:>12}  {}\n", figure.name, figure.amount, figure.what);
 }
 
 }  // namespace
 
 int verb_plan(const PlanOptions& options, Progress& progress) {
+  const std::size_t bytes_at_start = resident_bytes();
+  std::optional<tbb::global_control> limit;
+  if (options.threads > 0) limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(options.threads));
   const Scene scene = read_scene(options.scene);
   const MethodChoice choice = choose_method(options.method, options.quality, scene, progress);
   for (const auto& note : scene.notes) progress.line("note: " + note);
-  const Plan plan = make_plan(scene, choice, progress);
+  const Plan plan = make_plan(scene, choice, progress, bytes_at_start, options.threads);
   if (options.json)
     fmt::print("{}\n", json_of(scene, plan).dump(2));
   else

@@ -48,12 +48,6 @@ void say_what_is_dropped(const FacetScene& facets, Progress& progress) {
         fmt::format("note: {} no area: kept as rows of zeros, not traced", counted(facets.zero_area_facets, "facet has", "facets have")));
 }
 
-/// What the policies that plants name say, if any does.
-std::optional<Classification> classes_of(const Scene& scene) {
-  const bool any = std::any_of(scene.plants.begin(), scene.plants.end(), [](const auto& p) { return !p.policy_file.empty(); });
-  return any ? std::optional(classify(scene, read_policies(scene))) : std::nullopt;
-}
-
 SolveReport run_method(const MethodChoice& choice, const Scene& scene, const PlacedScene& placed, const std::optional<FacetScene>& facets,
                        const SolveOptions& options, std::uint64_t seed, IrradianceSink& sink, Progress& progress) {
   if (choice.method == "instantiation") {
@@ -61,7 +55,7 @@ SolveReport run_method(const MethodChoice& choice, const Scene& scene, const Pla
     settings.seed = seed;
     settings.threads = options.threads;
     settings.density = choice.fineness ? instantiation_density_at(*choice.fineness) : instantiation_density(choice.quality);
-    const auto classes = classes_of(scene);
+    const auto classes = classes_of_policies(scene);
     settings.classes = classes ? &*classes : nullptr;
     return solve_instantiation(scene, placed, settings, sink, progress);
   }

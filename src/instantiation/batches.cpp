@@ -12,25 +12,30 @@ int batch_width(std::size_t lanes, std::size_t columns) {
   return width;
 }
 
-std::vector<Batch> batches_of(const SceneLight& s, const std::vector<std::uint32_t>& members) {
-  std::map<std::uint32_t, std::vector<std::uint32_t>> by_original;
-  for (const auto m : members) by_original[s.members.found.members[m].original].push_back(m);
+std::vector<Batch> batches_of_original(std::uint32_t original, const std::vector<std::uint32_t>& members, std::size_t all_columns) {
   std::vector<Batch> out;
-  for (const auto& [original, list] : by_original) {
-    const int width = batch_width(list.size() * s.columns, s.columns);
-    const std::size_t columns = std::min<std::size_t>(s.columns, width), each = width / columns;
-    for (std::size_t first = 0; first < list.size(); first += each)
-      for (std::size_t c = 0; c < s.columns; c += columns) {
-        Batch b;
-        b.original = original;
-        b.members.assign(list.begin() + static_cast<std::ptrdiff_t>(first),
-                         list.begin() + static_cast<std::ptrdiff_t>(std::min(list.size(), first + each)));
-        b.first_column = c;
-        b.columns = std::min(columns, s.columns - c);
-        b.width = width;
-        out.push_back(std::move(b));
-      }
-  }
+  const int width = batch_width(members.size() * all_columns, all_columns);
+  const std::size_t columns = std::min<std::size_t>(all_columns, width), each = width / columns;
+  for (std::size_t first = 0; first < members.size(); first += each)
+    for (std::size_t c = 0; c < all_columns; c += columns) {
+      Batch b;
+      b.original = original;
+      b.members.assign(members.begin() + static_cast<std::ptrdiff_t>(first),
+                       members.begin() + static_cast<std::ptrdiff_t>(std::min(members.size(), first + each)));
+      b.first_column = c;
+      b.columns = std::min(columns, all_columns - c);
+      b.width = width;
+      out.push_back(std::move(b));
+    }
+  return out;
+}
+
+std::vector<Batch> batches_of(const Members& all, std::size_t columns, const std::vector<std::uint32_t>& members) {
+  std::map<std::uint32_t, std::vector<std::uint32_t>> by_original;
+  for (const auto m : members) by_original[all.found.members[m].original].push_back(m);
+  std::vector<Batch> out;
+  for (const auto& [original, list] : by_original)
+    for (auto& b : batches_of_original(original, list, columns)) out.push_back(std::move(b));
   return out;
 }
 

@@ -25,8 +25,14 @@ struct Batch {
 /// Lanes that are worked on together where an original has so many, of so many columns a member.
 int batch_width(std::size_t lanes, std::size_t columns);
 
-/// Batches over the members given, members of one original together, in a fixed order.
-std::vector<Batch> batches_of(const SceneLight& s, const std::vector<std::uint32_t>& members);
+/// Batches over members of one original, of so many columns each.
+std::vector<Batch> batches_of_original(std::uint32_t original, const std::vector<std::uint32_t>& members, std::size_t columns);
+
+/// Batches over the members given, of so many columns each, members of one original together, in a fixed order.
+std::vector<Batch> batches_of(const Members& all, std::size_t columns, const std::vector<std::uint32_t>& members);
+inline std::vector<Batch> batches_of(const SceneLight& s, const std::vector<std::uint32_t>& members) {
+  return batches_of(s.members, s.columns, members);
+}
 
 /// Bytes of the lanes of those batches that are worked on at the same time; `fields(batch)`: values in each of its lanes.
 template <class Fields>

@@ -29,8 +29,7 @@ std::size_t GroundView::bytes() const {
   return total;
 }
 
-GroundView view_from_ground(const Scene& scene, const std::vector<Triangle>& ground, const Surroundings& around, const LightSources& lights,
-                            std::uint32_t rays, std::uint32_t sun_samples, std::uint64_t seed, Progress& progress) {
+GroundView empty_ground_view(const Scene& scene, const std::vector<Triangle>& ground, const LightSources& lights, std::uint32_t rays) {
   GroundView out;
   const std::size_t facets = ground.size(), sides = 2 * facets;
   out.backs = scene.ground && scene.ground->mesh;
@@ -48,6 +47,13 @@ GroundView view_from_ground(const Scene& scene, const std::vector<Triangle>& gro
     out.seen[2 * f] = out.area[f] > 0;
     out.seen[2 * f + 1] = out.backs && out.area[f] > 0;
   }
+  return out;
+}
+
+GroundView view_from_ground(const Scene& scene, const std::vector<Triangle>& ground, const Surroundings& around, const LightSources& lights,
+                            std::uint32_t rays, std::uint32_t sun_samples, std::uint64_t seed, Progress& progress) {
+  GroundView out = empty_ground_view(scene, ground, lights, rays);
+  const std::size_t facets = ground.size();
   std::vector<std::vector<Vec3>> disc;
   for (const auto* sun : lights.suns) disc.push_back(sun_directions(*sun, std::max(sun_samples, 4u) * 8, mix(seed, 3)));
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, facets, 16), [&](const auto& range) {

@@ -28,6 +28,9 @@ struct GroundView {
   std::size_t bytes() const;
 };
 
+/// With room for all that is seen, and nothing seen yet.
+GroundView empty_ground_view(const Scene& scene, const std::vector<Triangle>& ground, const LightSources& lights, std::uint32_t rays);
+
 GroundView view_from_ground(const Scene& scene, const std::vector<Triangle>& ground, const Surroundings& around, const LightSources& lights,
                             std::uint32_t rays, std::uint32_t sun_samples, std::uint64_t seed, Progress& progress);
 

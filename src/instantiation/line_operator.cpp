@@ -66,9 +66,11 @@ Vec3 from_octahedron(double x, double y) {
 
 }  // namespace
 
-std::uint32_t directions_together(double hits_of_direction) {
+std::uint32_t directions_together(double hits_of_direction, bool visited) {
   const auto fewest = static_cast<double>(std::max(std::size_t{4}, threads_at_work()));
-  return static_cast<std::uint32_t>(std::clamp(hits_together / std::max(hits_of_direction, 1.0), fewest, 65536.0));
+  const auto together = static_cast<std::uint32_t>(std::clamp(hits_together / std::max(hits_of_direction, 1.0), fewest, 65536.0));
+  constexpr auto streams = static_cast<std::uint32_t>(LineVisitor::streams);
+  return visited ? (together + streams - 1) / streams * streams : together;  // streams in order
 }
 
 LineOperator::LineOperator(const Elements& elements, const std::vector<std::uint8_t>& interior, const OperatorDensity& density,
@@ -102,16 +104,15 @@ void LineOperator::trace(const Elements& elements, const std::vector<std::uint8_
   projections_.resize(directions_);
   std::vector<Traced> traced(directions_);
   std::vector<std::uint32_t> counts(field_lines.size(), 0);
-  LinkRowsBuilder within(2 * elements.size(), 2 * (seen_ == Seen::cells ? surface.cells() : elements.size()));
+  seen_sides_ = 2 * (seen_ == Seen::cells ? surface.cells() : elements.size());
+  LinkRowsBuilder within(2 * elements.size(), seen_sides_);
   LinkRowsBuilder out(2 * elements.size(), field_lines.size());
   tbb::enumerable_thread_specific<Tracer> tracers;
   // Links of a part of the directions are merged before the next are traced: all lines of a large plant take several times what their
   // links do.
   const double area = std::accumulate(elements.area.begin(), elements.area.end(), 0.0);
   const double hits_of_direction = 0.5 * area / line_area;
-  constexpr auto streams = static_cast<std::uint32_t>(LineVisitor::streams);
-  auto together = directions_together(hits_of_direction);
-  if (visitor) together = (together + streams - 1) / streams * streams;  // streams in order
+  const auto together = directions_together(hits_of_direction, visitor != nullptr);
   for (std::uint32_t first = 0; first < directions_; first += together) {
     const std::uint32_t end = std::min(directions_, first + together);
     within.begin(end - first);
@@ -229,9 +230,9 @@ void LineOperator::trace(const Elements& elements, const std::vector<std::uint8_
     add_to(lines, tracer.lines);
     add_to(hits, tracer.hits);
     add_to(inside_hits, tracer.inside_hits);
-    built_with_ += tracer.bytes();
+    traced_with_ += tracer.bytes();
   }
-  built_with_ += within.peak() + out.peak();
+  built_with_ = traced_with_ + within.peak() + out.peak();
   tracers.clear();
   for (const auto& t : traced) {
     fragments += t.fragments;
@@ -304,10 +305,17 @@ void LineOperator::forget_links() {
   points = {};
 }
 
+std::size_t LineOperator::bytes_of_directions() const {
+  return bytes_of(field_lines) + bytes_of(point_start) + bytes_of(points) + bytes_of(projections_);
+}
+
+std::size_t LineOperator::bytes_kept() const {
+  return bytes_of_directions() - bytes_of(points) + bytes_of(segments) + bytes_of(nearest_);
+}
+
 std::size_t LineOperator::bytes() const {
-  std::size_t total = bytes_of(lines) + bytes_of(field_lines) + bytes_of(point_start) + bytes_of(points) + bytes_of(segments) +
-                      bytes_of(stand_in) + bytes_of(projections_) + bytes_of(nearest_) + bytes_of(enclosed) + bytes_of(open_area);
-  return total + inside.bytes() + outside.bytes();
+  return bytes_kept() + bytes_of(points) + bytes_of(lines) + bytes_of(stand_in) + bytes_of(enclosed) + bytes_of(open_area) +
+         inside.bytes() + outside.bytes();
 }
 
 }  // namespace sunfleck

@@ -52,6 +52,7 @@ class LineOperator {
   }
 
   Seen seen() const { return seen_; }
+  std::size_t seen_sides() const { return seen_sides_; }  ///< columns of `inside`
 
   std::uint32_t directions() const { return directions_; }
   std::uint32_t pixels() const { return pixels_; }
@@ -69,6 +70,12 @@ class LineOperator {
   void forget_links();
   /// The most that was held while it was made, itself included [bytes].
   std::size_t built_with() const { return built_with_; }
+  /// What of it threads worked in, direction by direction [bytes].
+  std::size_t traced_with() const { return traced_with_; }
+  /// What is held for each direction, links aside [bytes].
+  std::size_t bytes_of_directions() const;
+  /// What forget_links() leaves [bytes].
+  std::size_t bytes_kept() const;
 
   LinkRows inside;                   ///< n_ij: columns are sides of elements or of cells
   LinkRows outside;                  ///< n_if: columns are fields
@@ -95,10 +102,10 @@ class LineOperator {
   Seen seen_ = Seen::elements;
   std::vector<Projection> projections_;
   std::vector<std::uint16_t> nearest_;  ///< sense by octahedral map
-  std::size_t built_with_ = 0;
+  std::size_t seen_sides_ = 0, traced_with_ = 0, built_with_ = 0;
 };
 
-/// Directions whose links are merged together, where a direction's lines have so many hits.
-std::uint32_t directions_together(double hits_of_direction);
+/// Directions whose links are merged together, where a direction's lines have so many hits; `visited`: a visitor follows them.
+std::uint32_t directions_together(double hits_of_direction, bool visited);
 
 }  // namespace sunfleck

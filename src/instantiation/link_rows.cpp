@@ -1,6 +1,7 @@
 #include "instantiation/link_rows.hpp"
 
 #include <algorithm>
+#include <numeric>
 
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
@@ -57,6 +58,18 @@ struct MergeRoom {
 
 std::size_t LinkRows::size() const {
   return links_of(narrow) + links_of(wide);
+}
+std::size_t LinkRows::largest_part() const {
+  std::size_t most = 0;
+  for (const auto& p : narrow) most = std::max(most, p.count.size());
+  for (const auto& p : wide) most = std::max(most, p.count.size());
+  return most;
+}
+std::uint64_t LinkRows::lines() const {
+  std::uint64_t total = 0;
+  for (const auto& p : narrow) total = std::accumulate(p.count.begin(), p.count.end(), total);
+  for (const auto& p : wide) total = std::accumulate(p.count.begin(), p.count.end(), total);
+  return total;
 }
 std::size_t LinkRows::bytes() const {
   return bytes_of_parts(narrow) + bytes_of_parts(wide);

@@ -35,8 +35,12 @@ struct LinkRows {
   }
   /// What an entry takes where there are so many columns.
   static constexpr double bytes_per_link(std::size_t columns) { return columns <= most_narrow ? 3.0 : 5.0; }
-  /// Entries of all rows.
+  /// Entries of all rows, and of the part that has most.
   std::size_t size() const;
+  std::size_t largest_part() const;
+  std::size_t parts() const { return narrow.size() + wide.size(); }
+  /// Lines of all entries.
+  std::uint64_t lines() const;
   std::size_t bytes() const;
   bool operator==(const LinkRows&) const = default;
 

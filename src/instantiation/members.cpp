@@ -25,6 +25,13 @@ constexpr std::uint64_t coarse_stream = 0x7d3f1c5b2e8a9604ULL;
 
 }  // namespace
 
+OperatorDensity coarse_density(const Scene& scene, const Original& original, OperatorDensity coarse) {
+  if (original.parts.front().plant < scene.plants.size()) return coarse;
+  coarse.directions = std::min(coarse.directions, 48u);
+  coarse.field_pixels = std::max(1u, coarse.field_pixels / 2);
+  return coarse;
+}
+
 OriginalLight original_light(const Scene& scene, const Approximation& approximation, const Original& original, double elements_per_organ,
                              const OperatorDensity& density, std::uint64_t seed, Progress& progress) {
   Scene own;
@@ -107,13 +114,6 @@ void split_ground(const std::vector<Triangle>& ground, Members& out) {
   }
 }
 
-/// Pieces of plants are small and many: coarser fields do.
-OperatorDensity for_pieces(OperatorDensity d) {
-  d.directions = std::min(d.directions, 48u);
-  d.field_pixels = std::max(1u, d.field_pixels / 2);
-  return d;
-}
-
 Members with_light(const Scene& scene, const PlacedScene& placed, Approximation approximation, Originals found,
                    const OperatorDensity& coarse, double elements_per_organ, std::uint64_t seed, Progress& progress) {
   Members out;
@@ -126,8 +126,7 @@ Members with_light(const Scene& scene, const PlacedScene& placed, Approximation 
     progress.fraction("originals", static_cast<double>(o) / static_cast<double>(out.found.originals.size()));
     out.originals.push_back(original_light(scene, out.approximation, out.found.originals[o], elements_per_organ, coarse, seed, progress));
     auto& light = out.originals.back();
-    const bool piece = out.found.originals[o].parts.front().plant >= scene.plants.size();
-    light.coarse = std::make_unique<LineOperator>(light.elements, light.interior, piece ? for_pieces(coarse) : coarse,
+    light.coarse = std::make_unique<LineOperator>(light.elements, light.interior, coarse_density(scene, out.found.originals[o], coarse),
                                                   mix(seed, coarse_stream, o), progress);
     out.made_with = std::max(out.made_with, out.bytes() - light.coarse->bytes() + light.coarse->built_with());
   }

@@ -47,6 +47,10 @@ struct Members {
 
   /// In which light is solved.
   std::size_t size() const { return found.solved; }
+  /// The ground in which light is solved.
+  std::vector<Triangle> solved_ground() const {
+    return {copies.ground.begin(), copies.ground.begin() + static_cast<std::ptrdiff_t>(ground_facets)};
+  }
   std::size_t bytes() const;
   bool is_far(std::size_t member) const { return member >= found.solved; }
   std::uint64_t original_facets(std::size_t member) const { return found.originals[found.members[member].original].facets; }
@@ -60,6 +64,9 @@ struct Members {
 /// Members that stand in for structures stay apart: what they hide of each other is part of the approximation until they are opened.
 Members make_members(const Scene& scene, const PlacedScene& placed, const Classification* classes, const OperatorDensity& coarse,
                      double elements_per_organ, std::uint64_t seed, Progress& progress);
+
+/// Of an original's coarse operator. Pieces of plants are small and many: coarser fields do.
+OperatorDensity coarse_density(const Scene& scene, const Original& original, OperatorDensity coarse);
 
 /// An original without its operator.
 OriginalLight original_light(const Scene& scene, const Approximation& approximation, const Original& original, double elements_per_organ,

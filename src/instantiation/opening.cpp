@@ -16,6 +16,7 @@
 #include "instantiation/copy_rows.hpp"
 #include "instantiation/ground_rows.hpp"
 #include "instantiation/inside_gather.hpp"
+#include "instantiation/opening_steps.hpp"
 
 namespace sunfleck {
 
@@ -26,96 +27,61 @@ constexpr std::uint64_t fine_stream = 0x1b9e4d6a7c2f5083ULL;
 class Opening {
  public:
   Opening(SceneLight& s, const Light& total, IrradianceSink& sink, SolveReport& report)
-      : s_(s), total_(total), sink_(sink), report_(report), ordered_(sink) {}
+      : s_(s), total_(total), sink_(sink), report_(report), ordered_(sink), order_(opening_steps(s.members, s.placed, s.states, s.bands)) {}
 
   void open_all() {
     const auto ground_e = s_.ground_irradiance(&total_, true);  // before the fields change no more
-    opened_of_original_.assign(s_.members.originals.size(), 0);
-    for (std::uint32_t m = 0; m < s_.members.size(); ++m)
-      if (s_.has_rows(m)) {
-        opened_.push_back(m);
-        ++opened_of_original_[s_.members.found.members[m].original];
-      }
-    left_of_original_ = opened_of_original_;
-    const auto stood_for = copies_stood_for();
-    forgets_ = stood_for.empty() && s_.placed.closed.empty();  // else others shade by it, or absorb by it
-    std::size_t first = 0, next_own = 0;
-    while (first < opened_.size() || next_own < stood_for.size()) {
-      // those that others stand in for come in their turn, one by one
-      const std::uint32_t own = next_own < stood_for.size() ? stood_for[next_own] : no_parent;
-      if (first == opened_.size() || own < first_copy(opened_[first])) {
-        s_.progress.fraction("opening", static_cast<double>(next_own++) / static_cast<double>(stood_for.size()));
-        open_own(own);
-        continue;
-      }
-      s_.progress.fraction("opening", static_cast<double>(first) / static_cast<double>(opened_.size()));
-      const auto window = window_from(first, own);
-      first += window.size();
-      const auto batches = batches_of(s_, window);
-      for (auto begin = batches.begin(); begin != batches.end();) {
-        const auto end = std::find_if(begin, batches.end(), [&](const Batch& b) { return b.original != begin->original; });
-        open_group({begin, end});
-        begin = end;
-      }
+    for (std::size_t k = 0; k < order_.steps.size(); ++k) {
+      s_.progress.fraction("opening", static_cast<double>(k) / static_cast<double>(order_.steps.size()));
+      const auto& step = order_.steps[k];
+      step.own != no_parent ? open_own(step.own) : open_group(step);
     }
     write_ground_rows(s_, ground_e, sink_, report_);
     judge_stand_ins(s_, total_, pieces_, report_);
   }
 
  private:
-  /// Members to open together from the first-th on, as far as their rows fit, and none whose copies come after `before`.
-  std::vector<std::uint32_t> window_from(std::size_t first, std::uint32_t before) const {
-    std::vector<std::uint32_t> window;
-    std::size_t bytes = 0;
-    for (; first < opened_.size() && (window.empty() || bytes < opening_window_bytes) && first_copy(opened_[first]) < before; ++first) {
-      window.push_back(opened_[first]);
-      bytes += s_.members.original_facets(opened_[first]) * 2 * sizeof(float) * (s_.columns + s_.states);
-    }
-    return window;
-  }
-
   /// Opens the batches of a window that share an original.
-  void open_group(const std::vector<Batch>& group) {
-    const std::uint32_t o = group.front().original;
-    const auto members = members_of(group);
-    auto rows = placed_rows(members);
+  void open_group(const OpeningStep& step) {
+    const std::uint32_t o = step.original;
+    const auto& group = step.batches;
+    auto rows = placed_rows(step.members);
     std::vector<std::vector<Balance>> partial(group.size());
     if (fine_of_ != o) {
       fine_.reset();
       fine_of_ = no_parent;
       s_.memory.hold("fine", 0);
     }
-    if (group.size() == 1 && opened_of_original_[o] == members.size())
+    if (step.once)
       open_once(group.front(), rows, partial.front());
     else
-      open_shared(group, rows, partial);
+      open_shared(step, rows, partial);
     s_.progress.check();
     for (std::size_t q = 0; q < group.size(); ++q) add_balance(group[q], partial[q]);
     send(rows);
-    auto& left = left_of_original_[o];
-    left -= static_cast<std::uint32_t>(members.size());
-    if (left > 0 || !forgets_) return;
+    if (!step.last || !order_.forgets) return;
     s_.members.originals[o].forget();  // makes room for those to come
     s_.memory.hold("originals", s_.members.bytes());
   }
 
   /// Opens batches along one fine operator, which is kept for those of the next window.
-  void open_shared(const std::vector<Batch>& group, std::vector<CopyRows>& rows, std::vector<std::vector<Balance>>& partial) {
+  void open_shared(const OpeningStep& step, std::vector<CopyRows>& rows, std::vector<std::vector<Balance>>& partial) {
+    const auto& group = step.batches;
     if (!fine_) {
-      fine_of_ = group.front().original;
+      fine_of_ = step.original;
       const auto& original = s_.members.originals[fine_of_];
-      fine_ =
-          std::make_unique<LineOperator>(original.elements, original.interior, gather_density(s_.density, opened_of_original_[fine_of_]),
-                                         mix(s_.seed, fine_stream, fine_of_), s_.progress, seen());
+      fine_ = std::make_unique<LineOperator>(original.elements, original.interior,
+                                             gather_density(s_.density, order_.opened_of_original[fine_of_]),
+                                             mix(s_.seed, fine_stream, fine_of_), s_.progress, seen());
+      s_.gather_fragments += fine_->fragments;
       s_.memory.pass("fine", fine_->built_with());
       s_.memory.hold("fine", fine_->bytes());
     }
     const LineOperator& fine = *fine_;
-    std::size_t most_members = 0;
-    for (const auto& b : group) most_members = std::max(most_members, b.members.size());
-    s_.memory.pass("lanes", most_members * fine.points.size() * sizeof(RayEnd) +
-                                lanes_at_once(group, [&](const Batch& b) { return lanes_of(b, fine); }));
     const auto runs = runs_of_members(group, 0, group.size());
+    s_.memory.pass("lanes", ends_at_once(group, runs) * fine.points.size() * sizeof(RayEnd) +
+                                lanes_at_once(group, [&](const Batch& b) { return lanes_of(b, fine); }));
+    s_.gather_rays += step.members.size() * fine.points.size();
     tbb::parallel_for(std::size_t{0}, runs.size(), [&](std::size_t r) {
       if (s_.progress.cancelled()) return;
       const auto [first_batch, last_batch] = std::pair(runs[r]);
@@ -140,32 +106,14 @@ class Opening {
     return ends;
   }
 
-  /// Copies with rows that others stand in for.
-  std::vector<std::uint32_t> copies_stood_for() const {
-    std::vector<std::uint32_t> out;
-    for (std::uint32_t m = 0; m < s_.members.size(); ++m) {
-      const auto& member = s_.members.found.members[m];
-      if (member.stands_in && member.copies.front() < s_.placed.copies.size() && (out.empty() || out.back() != member.copies.front()))
-        out.push_back(member.copies.front());
-    }
-    return out;
-  }
-
-  static std::vector<std::uint32_t> members_of(const std::vector<Batch>& batches) {
-    std::vector<std::uint32_t> out;
-    for (const auto& [first, last] : runs_of_members(batches, 0, batches.size()))
-      out.insert(out.end(), batches[first].members.begin(), batches[first].members.end());
-    return out;
-  }
-
-  std::uint32_t first_copy(std::uint32_t m) const { return s_.members.found.members[m].copies.front(); }
-
   void open_own(std::uint32_t copy) {
     const std::uint32_t own = s_.begin_own(copy);
     const LineOperator& op = s_.members.coarse_of(own);
     const auto ends = ends_of(own, op);
     auto rows = placed_rows({own});
     const auto batches = batches_of(s_, {own});
+    s_.gather_rays += ends.size();
+    s_.memory.pass("lanes", bytes_of(ends) + lanes_at_once(batches, [&](const Batch& b) { return lanes_of(b, op); }));
     std::vector<std::vector<Balance>> partial(batches.size());
     tbb::parallel_for(std::size_t{0}, batches.size(),
                       [&](std::size_t q) { open(batches[q], {ends.data()}, op, {ends.data()}, rows, partial[q]); });
@@ -216,8 +164,10 @@ class Opening {
       InsideGather<width> gather(original.elements, cells.empty() ? radiosity : cells, seen());
       const LineOperator fine(original.elements, original.interior, gather_density(s_.density, b.members.size()),
                               mix(s_.seed, fine_stream, b.original), s_.progress, seen(), &gather);
+      s_.gather_fragments += fine.fragments;
+      s_.gather_rays += b.members.size() * fine.points.size();
       s_.memory.pass("fine", fine.built_with() + gather.bytes() + bytes_of(radiosity) + bytes_of(cells));
-      s_.memory.pass("lanes", sizeof(float) * width * lanes_of(b, fine));
+      s_.memory.pass("lanes", b.members.size() * fine.points.size() * sizeof(RayEnd) + sizeof(float) * width * lanes_of(b, fine));
       std::vector<std::vector<RayEnd>> ends;
       std::vector<const RayEnd*> fine_ends;
       for (const auto m : b.members) {
@@ -245,10 +195,8 @@ class Opening {
     finish<width>(b, fine, fine_ends, radiosity, std::move(inside), rows, balance);
   }
 
-  /// Values in each lane of a batch that is opened.
   std::size_t lanes_of(const Batch& b, const LineOperator& fine) const {
-    const auto& e = s_.members.originals[b.original].elements;
-    return 3 * 2 * e.size() + (fine.seen() == LineOperator::Seen::cells ? 2 * e.surface.cells() : 0) + fine.fields();
+    return opening_lanes(s_.members.originals[b.original], fine.seen(), fine.fields());
   }
 
   /// Radiosity of the elements of a batch in the final light.
@@ -407,9 +355,7 @@ class Opening {
   std::map<std::uint32_t, std::size_t> row_of_member_;  ///< of the window
   RowsInOrder ordered_;
   std::vector<OpenedPieces> pieces_;
-  std::vector<std::uint32_t> opened_;                                 ///< members with rows
-  std::vector<std::uint32_t> opened_of_original_, left_of_original_;  ///< members with rows, and those of them that wait
-  bool forgets_ = false;
+  const OpeningSteps order_;
   std::uint32_t fine_of_ = no_parent;  ///< the original that `fine_` is of
   std::unique_ptr<LineOperator> fine_;
 };

@@ -5,9 +5,6 @@
 
 namespace sunfleck {
 
-/// Rows of finished copies that wait for their turn, about.
-inline constexpr std::size_t opening_window_bytes = std::size_t{96} << 20;
-
 /// Solves the inside of every copy once more, gathers along the fine operator of its original, and hands the rows of all facets to the sink
 /// in their order; adds what is absorbed and escapes to the report's balance. Windows of copies are worked on together; an original's fine
 /// operator is traced when the first copy of a window needs it and dropped for the next original's.

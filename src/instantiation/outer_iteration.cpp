@@ -11,7 +11,6 @@ namespace sunfleck {
 
 namespace {
 
-constexpr std::size_t basis_bytes = std::size_t{256} << 20;  // of steps
 constexpr std::uint32_t most_passes = 100;
 
 double relative(const std::vector<double>& squared, const std::vector<double>& scale) {
@@ -52,7 +51,7 @@ OuterReport iterate(const SceneLight& s, const OuterIteration& iteration) {
   const std::size_t columns = s.columns;
   total = s.no_light();
   const std::size_t bytes = bytes_of(total.fields) + bytes_of(total.ground);
-  const auto most_steps = static_cast<std::size_t>(std::clamp<std::uint64_t>(basis_bytes / std::max<std::size_t>(bytes, 1), 3, 10));
+  const auto most_steps = most_steps_of(bytes);
   std::vector<double> scale;  // |b| per column
   std::size_t kept = 0;
   bool done = false;

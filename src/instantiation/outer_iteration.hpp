@@ -1,6 +1,7 @@
 // The light between copies: a fixed point, accelerated.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 
@@ -14,6 +15,12 @@ struct OuterIteration {
   std::function<void(std::uint32_t passes, double residual)> say;
   double tolerance = 1e-3;  ///< |b + A x - x| over |b|, worst column
 };
+
+/// Steps that are combined at most before the next begin from the true residual, where each takes so many bytes.
+inline std::size_t most_steps_of(std::size_t bytes) {
+  constexpr std::size_t basis_bytes = std::size_t{256} << 20;
+  return std::clamp<std::size_t>(basis_bytes / std::max<std::size_t>(bytes, 1), 3, 10);
+}
 
 struct OuterReport {
   Light light;

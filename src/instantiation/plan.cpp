@@ -2,17 +2,24 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <map>
+#include <optional>
+
+#include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
 
 #include <sunfleck/core/memory.hpp>
+#include <sunfleck/core/sampling.hpp>
 #include <sunfleck/light/light_sources.hpp>
+#include <sunfleck/plant/describe.hpp>
 #include <sunfleck/scene/counts.hpp>
 
-#include "instantiation/batches.hpp"
-#include "instantiation/members.hpp"
-#include "instantiation/opening.hpp"
-#include "instantiation/surroundings.hpp"
-#include "instantiation/threads.hpp"
+#include "instantiation/ground_light.hpp"
+#include "instantiation/memory_count.hpp"
+#include "instantiation/opening_steps.hpp"
+#include "instantiation/operator_size.hpp"
+#include "instantiation/outer_iteration.hpp"
+#include "instantiation/scene_light.hpp"
 
 namespace sunfleck {
 
@@ -20,22 +27,301 @@ namespace {
 
 constexpr std::uint64_t small_scene = 2'000'000;  // facets
 constexpr std::uint64_t fewest_facets = 20'000;
+constexpr std::uint32_t pilot_directions = 16;
+constexpr std::uint64_t pilot_stream = 0x6b1d9f3a5c7e2841ULL;
 
-/// Entries of rows after so many samples (directions x lines), from those of two pilots of which the second has twice the first's.
-double extrapolated(std::size_t few, std::size_t more, double factor) {
-  if (few == 0 || more == 0) return 0.0;
-  // merging grows as rows fill, so that the exponent falls on; by .06 on crowns and plants
-  const double exponent = std::clamp(std::log2(static_cast<double>(more) / static_cast<double>(few)) - 0.06, 0.5, 1.0);
-  return static_cast<double>(more) * std::pow(factor, exponent);
+std::uint64_t whole(double x) {
+  return static_cast<std::uint64_t>(std::llround(std::max(x, 0.0)));
 }
+
+Members pilot_members(const Scene& scene, const PlacedScene& placed, const InstantiationSettings& settings,
+                      const InstantiationDensity& density, Progress& progress) {
+  check_instantiable(scene);
+  OperatorDensity pilot = density.coarse;
+  pilot.directions = std::min(pilot.directions, pilot_directions);
+  return make_members(scene, placed, settings.classes, pilot, density.elements_per_organ, settings.seed, progress);
+}
+
+InstantiationSharing sharing_of(const Members& members, const PlacedScene& placed) {
+  InstantiationSharing out;
+  out.originals = members.originals.size();
+  out.copies = members.size();
+  out.merged_copies = members.merged;
+  out.tangled = members.tangled;
+  for (const auto& o : members.originals) out.elements += o.elements.size();
+  out.pieces = members.approximation.pieces.size();
+  out.structures = members.approximation.closed;
+  for (std::size_t m = 0; m < members.size(); ++m) out.copies_of_pieces += members.found.members[m].stands_in;
+  for (std::size_t c = 0; c < placed.copies.size(); ++c) out.opened_alone += !members.approximation.of_plant[placed.plant_of(c)].empty();
+  return out;
+}
+
+/// Lines towards the sun that meet the cells of a member, each cell at most as often as LitCells counts.
+double sun_meetings(const OriginalLight& original, const Similarity& map, const Vec3& sun, double lines_per_area) {
+  constexpr double most_count = 65535;
+  const auto& s = original.elements.surface;
+  const Vec3 d = map.direction_back(sun);
+  const double per_area = lines_per_area * map.scale * map.scale;
+  double sum = 0;
+  for (std::size_t t = 0; t < s.size(); ++t) {
+    if (s.split[t] == 0) continue;
+    const double cosine = std::fabs(s.normal[0][t] * d.x + s.normal[1][t] * d.y + s.normal[2][t] * d.z);
+    sum += std::min(most_count, per_area * cosine * double{s.cell_area[t]}) * (s.first_cell[t + 1] - s.first_cell[t]);
+  }
+  return sum;
+}
+
+bool scatters(const Scene& scene) {
+  const auto any = [](const Optics& o) {
+    for (const auto* list : {&o.reflectance_front, &o.reflectance_back, &o.transmittance})
+      if (std::any_of(list->begin(), list->end(), [](float v) { return v > 0.0f; })) return true;
+    return false;
+  };
+  return std::any_of(scene.optics.begin(), scene.optics.end(), any) || (scene.ground && any(scene.ground->optics));
+}
+
+/// Goes through a solve step by step, with sizes in place of the things themselves.
+class Planner {
+ public:
+  Planner(const Scene& scene, const PlacedScene& placed, const InstantiationSettings& settings, Progress& progress)
+      : scene_(scene),
+        placed_(placed),
+        density_(adapted(settings.density, placed.solved_facets())),
+        seed_(settings.seed),
+        tolerance_(settings.tolerance > 0 ? settings.tolerance : density_.tolerance),
+        progress_(progress),
+        states_(scene.states.size()),
+        columns_(states_ * scene.band_count()),
+        lights_(light_sources(scene.states)),
+        members_(pilot_members(scene, placed, settings, density_, progress)) {}
+
+  InstantiationPlan run() {
+    static_cast<InstantiationSharing&>(plan_) = sharing_of(members_, placed_);
+    memory_.hold("plants", held_bytes(scene_));
+    originals();
+    sun();
+    rays();
+    iteration();
+    opening();
+    count("originals", static_cast<double>(plan_.originals));
+    count("copies", static_cast<double>(plan_.copies));
+    if (plan_.merged_copies > 0) count("merged_copies", static_cast<double>(plan_.merged_copies));
+    count("elements", static_cast<double>(plan_.elements));
+    count("links", links_);
+    count("line_fragments", line_fragments_);
+    count("rays", rays_);
+    count("sun_fragments", sun_fragments_);
+    count("gather_fragments", gather_fragments_);
+    count("gather_rays", gather_rays_);
+    plan_.links = whole(links_);
+    plan_.memory = memory_.rows();
+    return std::move(plan_);
+  }
+
+ private:
+  static constexpr double lane_bytes = sizeof(float);
+
+  void count(const char* name, double n) { plan_.counts.emplace_back(name, whole(n)); }
+  void hold(const char* part, double bytes) { memory_.hold(part, whole(bytes)); }
+  void pass(const char* part, double bytes) { memory_.pass(part, whole(bytes)); }
+
+  LineOperator::Seen seen() const { return lights_.suns.empty() ? LineOperator::Seen::elements : LineOperator::Seen::cells; }
+
+  /// What an original holds besides its operator.
+  static double bare_bytes(const OriginalLight& o) { return static_cast<double>(o.bytes() - (o.coarse ? o.coarse->bytes() : 0)); }
+
+  std::vector<const LineOperator*> ladder(const std::vector<LineOperator>& pilots) const {
+    std::vector<const LineOperator*> out;
+    for (const auto& p : pilots) out.push_back(&p);
+    return out;
+  }
+
+  void originals() {
+    double held = 0, pieces = 0, made_with = 0;  // operators are made one after the other
+    for (const auto& piece : members_.approximation.pieces) pieces += static_cast<double>(held_bytes(*piece.plant));
+    auto all = static_cast<double>(members_.bytes());
+    for (std::size_t o = 0; o < members_.originals.size(); ++o) {
+      const auto& original = members_.originals[o];
+      const auto wanted = coarse_density(scene_, members_.found.originals[o], density_.coarse);
+      auto half = wanted;
+      half.directions = std::max(1u, original.coarse->directions() / 2);
+      const LineOperator few(original.elements, original.interior, half, mix(seed_, pilot_stream, o), progress_);
+      coarse_.push_back(operator_size({&few, original.coarse.get()}, wanted.directions));
+      const auto& size = coarse_.back();
+      links_ += size.links;
+      line_fragments_ += size.fragments;
+      all += size.bytes - static_cast<double>(original.coarse->bytes());
+      made_with = std::max(made_with, pieces + held + bare_bytes(original) + size.built_with);
+      held += bare_bytes(original) + size.bytes;
+    }
+    originals_ = all;
+    hold("originals", all);
+    pass("originals", made_with);
+  }
+
+  void sun() {
+    if (lights_.suns.empty()) return;
+    pitch_ = pitch_of_sun(members_, density_);
+    double cells = 0;
+    std::vector<double> of_member(members_.size(), 0.0);
+    for (std::size_t m = 0; m < members_.size(); ++m) cells += static_cast<double>(members_.original_of(m).elements.surface.cells());
+    for (std::size_t k = 0; k < lights_.suns.size(); ++k) {
+      hold("sun", static_cast<double>(k + 1) * cells);
+      pass("sun", static_cast<double>(k + 5) * cells);  // two counts a cell
+      tbb::parallel_for(std::size_t{0}, members_.size(), [&](std::size_t m) {
+        of_member[m] = sun_meetings(members_.original_of(m), members_.maps[m], lights_.suns[k]->direction, lines_of_sun());
+      });
+      for (const double n : of_member) sun_fragments_ += n;
+    }
+  }
+  double lines_of_sun() const { return density_.sun_samples / (pitch_ * pitch_); }
+
+  void rays() {
+    const Surroundings around(members_, placed_);
+    double ends = 0;
+    for (std::size_t m = 0; m < members_.size(); ++m) ends += size_of(m).points;
+    const auto ground = empty_ground_view(scene_, members_.solved_ground(), lights_, rays_of_ground(members_, density_));
+    sides_of_ground_ = static_cast<double>(ground.seen.size());
+    rays_ = ends + sides_of_ground_ * ground.rays;
+    hold("rays", static_cast<double>(around.bytes() + ground.bytes()) + ends * sizeof(RayEnd));
+  }
+  const OperatorSize& size_of(std::size_t m) const { return coarse_[members_.found.members[m].original]; }
+
+  void iteration() {
+    std::vector<std::uint32_t> all(members_.size());
+    double fields = 0;
+    for (std::uint32_t m = 0; m < all.size(); ++m) {
+      all[m] = m;
+      fields += static_cast<double>(size_of(m).fields);
+    }
+    hold("lanes", static_cast<double>(lanes_at_once(batches_of(members_, columns_, all), [&](const Batch& b) {
+           return 2 * 2 * members_.originals[b.original].elements.size() + coarse_[b.original].fields;
+         })));
+    const double light = sizeof(float) * static_cast<double>(columns_) * (fields + sides_of_ground_);
+    // the residual begins at 1 and loses a digit a pass; without scattering it is gone after the second
+    const double passes = scatters(scene_) ? 1 + std::ceil(-std::log10(tolerance_)) : 2;
+    hold("fields", (1 + std::min(passes, 1.0 + static_cast<double>(most_steps_of(whole(light))))) * light);
+    hold("lanes", 0);
+    hold("fields", light);
+  }
+
+  void opening() {
+    const auto order = opening_steps(members_, placed_, states_, scene_.band_count());
+    std::uint32_t fine_of = no_parent;
+    OperatorSize fine;
+    for (const auto& step : order.steps) {
+      progress_.check();
+      if (step.own != no_parent) {
+        open_own(step.own);
+        continue;
+      }
+      const auto& original = members_.originals[step.original];
+      rows_of(step.members);
+      if (fine_of != step.original) {
+        fine_of = no_parent;
+        hold("fine", 0);
+      }
+      const auto density = gather_density(density_, order.opened_of_original[step.original]);
+      const auto stream = mix(seed_, pilot_stream + 1, step.original);
+      if (step.once) {
+        const auto pilots = pilots_of(original, density, 1, seen(), stream, progress_);
+        fine = operator_size(ladder(pilots), density.directions, true);
+        gather_fragments_ += fine.fragments;
+        const auto& e = original.elements;
+        const double width = lane_bytes * step.batches.front().width, sides = 2.0 * static_cast<double>(e.size());
+        const double cells = seen() == LineOperator::Seen::cells ? 2.0 * static_cast<double>(e.surface.cells()) : 0.0;
+        pass("fine", fine.built_with + width * ((LineVisitor::streams + 1) * sides + cells));
+      } else if (fine_of == no_parent) {
+        fine_of = step.original;
+        const auto pilots = pilots_of(original, density, 3, seen(), stream, progress_);
+        fine = operator_size(ladder(pilots), density.directions);
+        gather_fragments_ += fine.fragments;
+        pass("fine", fine.built_with);
+        hold("fine", fine.bytes);
+      }
+      pass_lanes(step.batches, original, fine);
+      gather_rays_ += static_cast<double>(step.members.size()) * fine.points;
+      send();
+      if (!step.last || !order.forgets) continue;
+      originals_ += coarse_[step.original].kept - coarse_[step.original].bytes - bare_bytes(original);
+      hold("originals", originals_);
+    }
+  }
+
+  /// Lanes of batches that are opened, and where their rays end.
+  void pass_lanes(const std::vector<Batch>& batches, const OriginalLight& original, const OperatorSize& fine) {
+    const auto runs = runs_of_members(batches, 0, batches.size());
+    pass("lanes",
+         static_cast<double>(ends_at_once(batches, runs)) * fine.points * sizeof(RayEnd) +
+             static_cast<double>(lanes_at_once(batches, [&](const Batch&) { return opening_lanes(original, seen(), fine.fields); })));
+  }
+
+  void open_own(std::uint32_t copy) {
+    const std::uint32_t plant = placed_.plant_of(copy);
+    const auto map = *similarity_of(placed_.map_of(copy));
+    const auto& density = density_.fine;
+    const Original found{{{plant, Affine{}}}, placed_.plant_facets[plant]};
+    const auto original =
+        original_light(scene_, members_.approximation, found, density_.elements_per_organ, density_.coarse, seed_, progress_);
+    const auto pilots = pilots_of(original, density, 3, LineOperator::Seen::elements, mix(seed_, pilot_stream + 2, copy), progress_);
+    const auto size = operator_size(ladder(pilots), density.directions);
+    for (const auto* s : lights_.suns) sun_fragments_ += sun_meetings(original, map, s->direction, lines_of_sun());
+    gather_fragments_ += size.fragments;
+    gather_rays_ += size.points;
+    const double bare = bare_bytes(original);
+    pass("fine", bare + size.built_with);
+    hold("fine", bare + size.bytes + static_cast<double>(lights_.suns.size() * original.elements.surface.cells()));
+    wait(copy);
+    hold("rows", waiting_bytes_);
+    const auto lanes = lanes_at_once(batches_of_original(0, {0}, columns_),
+                                     [&](const Batch&) { return opening_lanes(original, LineOperator::Seen::elements, size.fields); });
+    pass("lanes", size.points * sizeof(RayEnd) + static_cast<double>(lanes));
+    hold("fine", 0);
+    send();
+  }
+
+  /// Rows of copies that wait until those before them are sent.
+  void wait(std::uint32_t copy) {
+    if (copy >= placed_.copies.size()) return;
+    const double values = static_cast<double>(columns_ + (lights_.suns.empty() ? 0 : states_)) * 2;
+    const std::uint64_t facets = placed_.plant_facets[placed_.copies[copy].plant];
+    waiting_.emplace(placed_.copies[copy].first_facet, facets);
+    waiting_bytes_ += values * sizeof(float) * static_cast<double>(facets);
+  }
+  void rows_of(const std::vector<std::uint32_t>& members) {
+    for (const auto m : members)
+      for (const auto c : members_.found.members[m].copies) wait(c);
+    hold("rows", waiting_bytes_);
+  }
+  void send() {
+    const double values = static_cast<double>(columns_ + (lights_.suns.empty() ? 0 : states_)) * 2;
+    for (; !waiting_.empty() && waiting_.begin()->first == next_facet_; waiting_.erase(waiting_.begin())) {
+      next_facet_ += waiting_.begin()->second;
+      waiting_bytes_ -= values * sizeof(float) * static_cast<double>(waiting_.begin()->second);
+    }
+    hold("rows", waiting_bytes_);
+  }
+
+  const Scene& scene_;
+  const PlacedScene& placed_;
+  const InstantiationDensity density_;
+  const std::uint64_t seed_;
+  const double tolerance_;
+  Progress& progress_;
+  const std::size_t states_, columns_;
+  const LightSources lights_;
+  const Members members_;
+  std::vector<OperatorSize> coarse_;  ///< [originals]
+  MemoryCount memory_;
+  double originals_ = 0, pitch_ = 1, sides_of_ground_ = 0;
+  double links_ = 0, line_fragments_ = 0, rays_ = 0, sun_fragments_ = 0, gather_fragments_ = 0, gather_rays_ = 0;
+  std::map<std::uint64_t, std::uint64_t> waiting_;  ///< first row -> rows
+  std::uint64_t next_facet_ = 0;
+  double waiting_bytes_ = 0;
+  InstantiationPlan plan_;
+};
 
 }  // namespace
-
-std::uint64_t InstantiationPlan::memory_total() const {
-  std::uint64_t total = 0;
-  for (const auto& [name, bytes] : memory) total += bytes;
-  return total;
-}
 
 bool repeats(const Scene& scene) {
   const auto counts = count(scene);
@@ -52,85 +338,17 @@ InstantiationDensity adapted(InstantiationDensity density, std::uint64_t facets)
   return density;
 }
 
+InstantiationSharing plan_sharing(const Scene& scene, const PlacedScene& placed, const InstantiationSettings& settings,
+                                  Progress& progress) {
+  const auto density = adapted(settings.density, placed.solved_facets());
+  return sharing_of(pilot_members(scene, placed, settings, density, progress), placed);
+}
+
 InstantiationPlan plan_instantiation(const Scene& scene, const PlacedScene& placed, const InstantiationSettings& settings,
                                      Progress& progress) {
-  check_instantiable(scene);
-  const auto density = adapted(settings.density, placed.solved_facets());
-  OperatorDensity pilot = density.coarse;
-  pilot.directions = 16;
-  const auto members = make_members(scene, placed, settings.classes, pilot, density.elements_per_organ, settings.seed, progress);
-  InstantiationPlan plan;
-  plan.originals = members.originals.size();
-  plan.copies = members.size();
-  plan.merged_copies = members.merged;
-  plan.tangled = members.tangled;
-  const std::size_t columns = scene.states.size() * scene.band_count();
-  const auto samples = [](const OperatorDensity& d) { return d.directions * d.lines_per_organ; };
-  const auto bytes_of_operator = [&](const LineOperator& few, const LineOperator& more, const OperatorDensity& d, std::size_t sides_seen,
-                                     double& links) {
-    const double factor = samples(d) / samples(pilot);
-    links = extrapolated(few.inside.size(), more.inside.size(), factor);
-    const double exits = extrapolated(few.outside.size(), more.outside.size(), factor);
-    const double fields = 2.0 * d.directions * d.field_pixels * d.field_pixels;
-    return LinkRows::bytes_per_link(sides_seen) * links + LinkRows::bytes_per_link(static_cast<std::size_t>(fields)) * exits +
-           16.0 * static_cast<double>(more.lines.size()) + (8.0 + 12.0 * d.points) * fields;
-  };
-  const auto threads = static_cast<double>(threads_at_work());
-  // lists of links, 6 bytes each, of some directions, and a bundle of lines a thread
-  const auto to_make = [&](const Elements& e, const OperatorDensity& d) {
-    const double hits = 0.5 * std::accumulate(e.area.begin(), e.area.end(), 0.0) / (0.5 * e.organ_area / d.lines_per_organ);
-    const double together = std::min(d.directions, directions_together(hits));
-    return hits * (together * 2 * 6 + threads * 60);
-  };
-  std::vector<std::uint64_t> copies(members.originals.size(), 0), opened(copies);
-  for (std::size_t m = 0; m < members.size(); ++m) {
-    ++copies[members.found.members[m].original];
-    opened[members.found.members[m].original] += members.found.members[m].copies.front() < placed.copies.size();
-  }
-  double shared = 0, fine = 0, links = 0, making = 0, lanes = 0, rows = 0;
-  for (std::size_t k = 0; k < members.originals.size(); ++k) {
-    const auto& o = members.originals[k];
-    OperatorDensity half = pilot;
-    half.directions /= 2;
-    const LineOperator few(o.elements, o.interior, half, settings.seed, progress);
-    double coarse_links = 0, fine_links = 0;
-    shared +=
-        static_cast<double>(o.elements.bytes()) + bytes_of_operator(few, *o.coarse, density.coarse, 2 * o.elements.size(), coarse_links);
-    const OperatorDensity gather = gather_density(density, opened[k]);
-    const double all_fine = bytes_of_operator(few, *o.coarse, gather, 2 * o.elements.surface.cells(), fine_links);
-    const auto of_copies = static_cast<double>(copies[k] * columns);
-    const double width = batch_width(copies[k] * columns, columns);
-    const double side_lanes = 4 * width * 2 * static_cast<double>(o.elements.size()),
-                 cells = 4 * width * 2 * static_cast<double>(o.elements.surface.cells());
-    const bool once = of_copies <= width;  // then its lines are followed and not kept
-    const double sums =
-        once ? LineVisitor::streams * side_lanes + cells - fine_links * LinkRows::bytes_per_link(2 * o.elements.surface.cells()) : 0.0;
-    fine = std::max(fine, all_fine + sums + to_make(o.elements, gather));
-    making = std::max(making, to_make(o.elements, density.coarse));
-    lanes = std::max(lanes, std::min(threads, std::ceil(of_copies / width)) * (3 * side_lanes + cells));
-    const auto facets = static_cast<double>(members.found.originals[k].facets);
-    rows = std::max(rows, std::min(static_cast<double>(copies[k]) * facets * 8 * static_cast<double>(columns + scene.states.size()),
-                                   double{opening_window_bytes}));
-    links += coarse_links;
-    plan.elements += o.elements.size();
-  }
-  plan.links = static_cast<std::uint64_t>(links);
-  const auto lights = light_sources(scene.states);
-  std::uint64_t cells = 0;
-  for (std::size_t m = 0; m < members.size(); ++m) cells += members.original_of(m).elements.surface.cells();
-  const double pixels = double(density.coarse.field_pixels) * density.coarse.field_pixels;
-  const double fields = 2.0 * density.coarse.directions * pixels * static_cast<double>(members.size());
-  plan.memory.emplace_back("plants", held_bytes(scene));
-  plan.memory.emplace_back("originals", static_cast<std::uint64_t>(shared + making));
-  if (!lights.suns.empty()) plan.memory.emplace_back("sun", lights.suns.size() * cells + 4 * cells);
-  const Surroundings around(members, placed);
-  plan.memory.emplace_back("rays", around.bytes() + static_cast<std::uint64_t>(fields * density.coarse.points * sizeof(RayEnd)) +
-                                       (placed.ground.size() + placed.near_ground.size()) * density.ground_rays * sizeof(RayEnd));
-  plan.memory.emplace_back("fields", static_cast<std::uint64_t>(6 * 4 * fields * static_cast<double>(columns)));
-  plan.memory.emplace_back("lanes", static_cast<std::uint64_t>(lanes));
-  plan.memory.emplace_back("rows", static_cast<std::uint64_t>(rows));
-  plan.memory.emplace_back("fine", static_cast<std::uint64_t>(fine));
-  return plan;
+  std::optional<tbb::global_control> control;
+  if (settings.threads > 0) control.emplace(tbb::global_control::max_allowed_parallelism, settings.threads);
+  return Planner(scene, placed, settings, progress).run();
 }
 
 }  // namespace sunfleck

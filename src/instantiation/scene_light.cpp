@@ -38,26 +38,33 @@ SceneLight::SceneLight(const Scene& a_scene, const PlacedScene& a_placed, const 
   memory.pass("originals", members.made_with);
 }
 
-void SceneLight::project_sun(SolveReport& report) {
-  double& pitch = sun_pitch;
+double pitch_of_sun(const Members& members, const InstantiationDensity& density) {
+  double pitch = 0;
   for (std::size_t m = 0; m < members.size(); ++m) {
     const double organ = members.original_of(m).elements.organ_area * members.maps[m].scale * members.maps[m].scale;
     const double own = std::sqrt(0.5 * organ / (density.sun_lines_per_organ / density.sun_samples));
     pitch = pitch == 0 ? own : std::min(pitch, own);
   }
-  std::uint64_t fragments = 0;
+  return pitch;
+}
+
+std::uint32_t rays_of_ground(const Members& members, const InstantiationDensity& density) {
+  return std::max(8u, density.ground_rays / (members.ground_split * members.ground_split));
+}
+
+void SceneLight::project_sun() {
+  sun_pitch = pitch_of_sun(members, density);
   CopyScene solved = members.copies;  // what is far shades nothing that is opened
   solved.copies.resize(members.size());
   for (const auto* sun : lights.suns) {
     lit.push_back(
-        lit_cells(solved, sun_directions(*sun, density.sun_samples, mix(seed, sun_stream)), pitch, mix(seed, sun_stream, 1), progress));
-    fragments += lit.back().fragments;
+        lit_cells(solved, sun_directions(*sun, density.sun_samples, mix(seed, sun_stream)), sun_pitch, mix(seed, sun_stream, 1), progress));
+    sun_fragments += lit.back().fragments;
     std::size_t bytes = 0;
     for (const auto& one : lit) bytes += bytes_of(one.lit);
     memory.hold("sun", bytes);
     memory.pass("sun", bytes + 4 * lit.back().lit.size());  // two counts a cell
   }
-  report.counts.emplace_back("sun_fragments", fragments);
 }
 
 void SceneLight::look_around(SolveReport& report) {
@@ -77,10 +84,7 @@ void SceneLight::look_around(SolveReport& report) {
     look_from(static_cast<std::uint32_t>(m), op, 0, op.fields(), ends.data() + end_start[m]);
   });
   progress.check();
-  const std::vector<Triangle> solved_ground(members.copies.ground.begin(),
-                                            members.copies.ground.begin() + static_cast<std::ptrdiff_t>(members.ground_facets));
-  ground = view_from_ground(scene, solved_ground, *around, lights,
-                            std::max(8u, density.ground_rays / (members.ground_split * members.ground_split)), density.sun_samples,
+  ground = view_from_ground(scene, members.solved_ground(), *around, lights, rays_of_ground(members, density), density.sun_samples,
                             mix(seed, ground_stream), progress);
   report.counts.emplace_back("rays", ends.size() + ground.seen.size() * ground.rays);
   memory.hold("rays", around->bytes() + bytes_of(ends) + ground.bytes());
@@ -111,9 +115,13 @@ std::uint32_t SceneLight::begin_own(std::uint32_t copy) {
   for (const auto* sun : lights.suns)
     own_lit.push_back(lit_cells(shade, sun_directions(*sun, density.sun_samples, mix(seed, sun_stream)), sun_pitch,
                                 mix(seed, sun_stream, 1), progress, static_cast<std::uint32_t>(shade.copies.size() - 1)));
+  gather_fragments += light.coarse->fragments;
   const std::size_t apart = light.bytes() - light.coarse->bytes();
   std::size_t sun = 0;
-  for (const auto& one : own_lit) sun += bytes_of(one.lit);
+  for (const auto& one : own_lit) {
+    sun += bytes_of(one.lit);
+    sun_fragments += one.fragments;
+  }
   memory.pass("fine", apart + light.coarse->built_with());
   memory.hold("fine", light.bytes() + sun);
   return own_member;
@@ -227,12 +235,6 @@ std::vector<double> SceneLight::product(const Light& a, const Light& b) const {
 
 Light SceneLight::no_light() const {
   return {std::vector<float>(field_start.back() * columns, 0.0f), std::vector<float>(ground.seen.size() * columns, 0.0f)};
-}
-
-bool SceneLight::has_rows(std::uint32_t m) const {
-  if (members.found.members[m].stands_in) return false;
-  const auto& copies = members.found.members[m].copies;
-  return std::any_of(copies.begin(), copies.end(), [&](std::uint32_t c) { return c < placed.copies.size(); });
 }
 
 std::vector<std::uint32_t> SceneLight::all_members() const {

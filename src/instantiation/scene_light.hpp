@@ -21,12 +21,17 @@ struct Light {
   std::vector<float> fields, ground;
 };
 
+/// Distance of the sun's lines [m].
+double pitch_of_sun(const Members& members, const InstantiationDensity& density);
+/// Rays from each part of the ground.
+std::uint32_t rays_of_ground(const Members& members, const InstantiationDensity& density);
+
 /// A scene, its members, the sun on their cells, and where their rays end. Columns: state * bands + band.
 struct SceneLight {
   SceneLight(const Scene& scene, const PlacedScene& placed, const InstantiationSettings& settings, Progress& progress);
 
   /// The sun's projection through all copies.
-  void project_sun(SolveReport& report);
+  void project_sun();
   /// Rays from all copies and from the ground.
   void look_around(SolveReport& report);
 
@@ -54,8 +59,6 @@ struct SceneLight {
   const std::uint8_t* lit_cells_of(std::size_t sun, std::uint32_t m) const {
     return m == own_member ? own_lit[sun].lit.data() : lit[sun].lit.data() + lit[sun].first[m];
   }
-  /// Is any copy of the member opened?
-  bool has_rows(std::uint32_t m) const;
 
   const Scene& scene;
   const PlacedScene& placed;
@@ -72,6 +75,8 @@ struct SceneLight {
   GroundView ground;
   double sun_pitch = 0;  ///< of the sun's lines [m]
   MemoryCount memory;
+  // Work: meetings of a line with a surface, towards the sun and along the operators that light is gathered along, and rays for the latter.
+  std::uint64_t sun_fragments = 0, gather_fragments = 0, gather_rays = 0;
 
  private:
   std::uint32_t own_member = 0xffffffffu;  ///< the member that begin_own() has made

@@ -22,16 +22,18 @@ namespace sunfleck {
 namespace {
 
 std::uint64_t report_originals(const SceneLight& s, SolveReport& report) {
-  std::uint64_t elements = 0, links = 0;
+  std::uint64_t elements = 0, links = 0, fragments = 0;
   for (const auto& o : s.members.originals) {
     elements += o.elements.size();
     links += o.coarse->inside.size();
+    fragments += o.coarse->fragments;
   }
   report.counts.emplace_back("originals", s.members.originals.size());
   report.counts.emplace_back("copies", s.members.size());
   if (s.members.merged > 0) report.counts.emplace_back("merged_copies", s.members.merged);
   report.counts.emplace_back("elements", elements);
   report.counts.emplace_back("links", links);
+  report.counts.emplace_back("line_fragments", fragments);
   s.progress.line(
       fmt::format("{} originals for {} copies, {} elements, {} links", s.members.originals.size(), s.members.size(), elements, links));
   if (!s.placed.closed.empty())
@@ -118,7 +120,7 @@ SolveReport solve_instantiation(const Scene& scene, const PlacedScene& placed, c
   SceneLight s(scene, placed, settings, progress);
   const auto links = report_originals(s, report);
   timed("originals");
-  s.project_sun(report);
+  s.project_sun();
   timed("sun");
   s.look_around(report);
   timed("rays");
@@ -146,6 +148,9 @@ SolveReport solve_instantiation(const Scene& scene, const PlacedScene& placed, c
 
   open_copies(s, iterated.light, sink, report);
   timed("opening");
+  report.counts.emplace_back("sun_fragments", s.sun_fragments);
+  report.counts.emplace_back("gather_fragments", s.gather_fragments);
+  report.counts.emplace_back("gather_rays", s.gather_rays);
   absorb_closed(s, iterated.light, report);
   if (!placed.closed.empty()) timed("closed structures");
   report.memory = s.memory.rows();

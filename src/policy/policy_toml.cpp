@@ -145,4 +145,9 @@ PolicySet read_policies(const Scene& scene) {
   return policies;
 }
 
+std::optional<Classification> classes_of_policies(const Scene& scene) {
+  const auto policies = read_policies(scene);
+  return policies.empty() ? std::nullopt : std::optional(classify(scene, policies));
+}
+
 }  // namespace sunfleck

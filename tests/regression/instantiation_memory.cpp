@@ -1,4 +1,4 @@
-// Memory and work of the instantiation, counted by the program: against its own plan, and as copies are added.
+// Memory and work of the instantiation, counted by the program, as copies are added (against its plan: plan_against_solve.cpp).
 #include <catch2/catch.hpp>
 
 #include <fmt/format.h>
@@ -43,21 +43,15 @@ std::uint64_t value(const std::vector<std::pair<std::string, std::uint64_t>>& li
 
 }  // namespace
 
-TEST_CASE("instantiation: what the plan predicts is held, within a quarter") {
+TEST_CASE("instantiation: less is held at one time than all parts together") {
   const auto scene = grove(3);
   REQUIRE(repeats(scene));
   Counted sink;
   const auto report = solve_instantiation(scene, place(scene), {}, sink, silent());
-  const auto plan = plan_instantiation(scene, place(scene), {}, silent());
   CHECK(sink.facets == 9 * 3000 + 128);
-  CHECK(plan.originals == value(report.counts, "originals"));
-  CHECK(plan.copies == value(report.counts, "copies"));
-  CHECK(plan.elements == value(report.counts, "elements"));
-  CHECK(static_cast<double>(plan.links) == Approx(static_cast<double>(value(report.counts, "links"))).epsilon(0.25));
   std::uint64_t held = 0;
   for (const auto& [name, bytes] : report.memory)
     if (name != "at_once") held += bytes;
-  CHECK(static_cast<double>(plan.memory_total()) == Approx(static_cast<double>(held)).epsilon(0.25));
   CHECK(value(report.memory, "at_once") < held);
   CHECK(value(report.memory, "at_once") > held / 2);
 }

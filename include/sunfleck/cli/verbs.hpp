@@ -31,6 +31,7 @@ int verb_solve(const SolveOptions& options, Progress& progress);
 struct PlanOptions {
   std::string scene;
   std::optional<std::string> method, quality;
+  int threads = 0;
   bool json = false;
 };
 int verb_plan(const PlanOptions& options, Progress& progress);

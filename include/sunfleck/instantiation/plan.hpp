@@ -10,14 +10,31 @@
 
 namespace sunfleck {
 
-/// Counts and bytes of solve_instantiation(). Originals, copies, elements and rays are exact; links follow from pilots of 8 and 16
-/// directions through every original: equal links merge, so they grow as a power of the lines, whose exponent the two pilots give.
-struct InstantiationPlan {
+/// What copies share.
+struct InstantiationSharing {
   std::uint64_t originals = 0, copies = 0, merged_copies = 0, elements = 0;
-  std::uint64_t links = 0;  ///< of the coarse operators
-  double tangled = 0;       ///< mean share of lines inside copies that meet another copy: above 1 % the method loses accuracy
-  std::vector<std::pair<std::string, std::uint64_t>> memory;  ///< names as SolveReport::memory has them
-  std::uint64_t memory_total() const;
+  double tangled = 0;  ///< mean share of lines inside copies that meet another copy: above 1 % the method loses accuracy
+  // Of plants that name a policy, while they are closed:
+  std::uint64_t pieces = 0;      ///< originals that stand for structures, and for what is in none of them
+  std::uint64_t structures = 0;  ///< structures that another stands in for
+  std::uint64_t copies_of_pieces = 0;
+  std::uint64_t opened_alone = 0;  ///< plants that are opened with their own geometry, one by one
+};
+
+/// Traces a pilot of 16 directions through every original. Throws what solve_instantiation() does.
+InstantiationSharing plan_sharing(const Scene& scene, const PlacedScene& placed, const InstantiationSettings& settings, Progress& progress);
+
+/// Counts and bytes of solve_instantiation(), all of what it counts but `sweeps`, which optics decide.
+/// - Originals, copies, elements are those of the solve; copies that hardly reach into each other may be put together in one of the two
+///   and not in the other.
+/// - Meetings of lines: inside originals in proportion to those of pilots; towards the sun from the area that cells turn to it.
+/// - Links follow from pilots of 8, 16 and 32 directions through every original: equal links merge, so they grow as a power of the lines.
+/// - What is held when is followed step by step in the order of the solve, with the same batches, windows and threads. The iteration is
+///   taken to gain a digit a pass, which tells how many fields are kept.
+struct InstantiationPlan : InstantiationSharing {
+  std::uint64_t links = 0;                                    ///< of the coarse operators
+  std::vector<std::pair<std::string, std::uint64_t>> counts;  ///< names as SolveReport::counts has them
+  std::vector<std::pair<std::string, std::uint64_t>> memory;  ///< names as SolveReport::memory has them, "at_once" among them
 };
 
 InstantiationPlan plan_instantiation(const Scene& scene, const PlacedScene& placed, const InstantiationSettings& settings,

@@ -1,0 +1,96 @@
+// `sunfleck plan` as its user meets it: what it predicts stands beside what a solve counts, and bad policies are refused as by a solve.
+#include <catch2/catch.hpp>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <sunfleck/result/result_reader.hpp>
+
+#include "run_program.hpp"
+
+namespace {
+
+using sunfleck::Result;
+
+/// Three young poplars, no two alike, with a policy of their own.
+struct Poplars {
+  explicit Poplars(const std::string& policy) {
+    std::string text =
+        "bands = [\"PAR\", \"NIR\"]\n[sun]\nelevation = 42.0\nazimuth = 225.0\nirradiance = { PAR = 390.0, NIR = 440.0 }\n"
+        "[sky]\nmodel = \"clear\"\nirradiance = { PAR = 75.0, NIR = 40.0 }\n"
+        "[optics.leaf]\nreflectance = { PAR = 0.1, NIR = 0.45 }\ntransmittance = { PAR = 0.05, NIR = 0.42 }\n"
+        "[optics.bark]\nreflectance = { PAR = 0.2, NIR = 0.4 }\n";
+    for (int i = 1; i <= 3; ++i)
+      text +=
+          fmt::format("[[plant]]\nname = \"poplar_{0}\"\nfile = \"" SUNFLECK_SOURCE_DIR
+                      "/plants/poplar.toml\"\nage = 3\nseed = {0}\npolicy = \"p.toml\"\noptics = {{ leaf = \"leaf\", bark = \"bark\" }}\n"
+                      "place = [ {{ position = [{1}, 0, 0] }} ]\n",
+                      i, 2 * i);
+    path = folder.file("three.toml", text);
+    folder.file("p.toml", policy);
+  }
+  ProgramRun plan(const std::string& method = "instantiation") const {
+    return run_sunfleck({"plan", path, "--json", "--method", method, "--quality", "draft", "--threads", "2"});
+  }
+  ProgramRun solve(const std::string& method = "instantiation") const {
+    return run_sunfleck(
+        {"solve", path, "-o", folder.path("r.h5"), "--method", method, "--quality", "draft", "--threads", "2", "--no-certificate"});
+  }
+  TemporaryFolder folder;
+  std::string path;
+};
+
+const std::string branches = "[type.branch]\nparameters = { leaf_count = [1, 4, 16, 64], order = \"each\" }\nleast_members = 2\n";
+
+}  // namespace
+
+TEST_CASE("plan knows the policies of a scene, and names its figures as the result does", "[cli][plan]") {
+  const Poplars scene(branches);
+  const auto run = scene.plan();
+  INFO(run.err);
+  REQUIRE(run.exit_code == 0);
+  const auto plan = nlohmann::json::parse(run.out);
+  CHECK(plan["done"]["policies"].get<std::string>().find("of 3 plants that are opened alone") != std::string::npos);
+  const auto solved = scene.solve();
+  INFO(solved.err);
+  REQUIRE(solved.exit_code == 0);
+  const Result result(scene.folder.path("r.h5"));
+  for (const auto& [name, bytes] : result.memory()) {
+    if (name == "peak_resident") continue;
+    CAPTURE(name, bytes);
+    REQUIRE(plan["memory_bytes"].contains(name));
+    CHECK(plan["memory_bytes"][name].get<double>() == Approx(static_cast<double>(bytes)).epsilon(0.25));
+  }
+  for (const auto& [name, amount] : result.counts()) {
+    if (name == "sweeps") continue;
+    CAPTURE(name, amount);
+    REQUIRE(plan["work"].contains(name));
+    CHECK(plan["work"][name].get<double>() == Approx(static_cast<double>(amount)).epsilon(0.25));
+  }
+  // other methods take no notice of policies, and say so nowhere
+  const auto flat = nlohmann::json::parse(scene.plan("flat").out);
+  CHECK_FALSE(flat["done"].contains("policies"));
+  CHECK_FALSE(flat["left_out"].contains("policies"));
+}
+
+TEST_CASE("plan refuses policies as solve does", "[cli][plan]") {
+  const std::vector<std::pair<std::string, std::string>> broken{
+      {"[type.branch\n", "p.toml"},
+      {"[type.branch]\nparameters = { leaf_count = [4, 1] }\n", "p.toml:2"},
+      {"[type.branch]\nparameters = { vigour = [1, 4] }\n", "p.toml:2"},
+      {"[type.brunch]\nparameters = { leaf_count = [1, 4] }\n", "brunch"},
+  };
+  for (const auto& [policy, where] : broken) {
+    const Poplars scene(policy);
+    const auto plan = scene.plan(), solve = scene.solve();
+    CAPTURE(policy, plan.err, solve.err);
+    CHECK(plan.exit_code == 2);
+    CHECK(solve.exit_code == 2);
+    CHECK(plan.out.empty());
+    CHECK(plan.err.find(where) != std::string::npos);
+    // a solve says first what it has read
+    const auto at = solve.err.find("sunfleck: ");
+    REQUIRE(at != std::string::npos);
+    CHECK(plan.err == solve.err.substr(at));
+  }
+}
