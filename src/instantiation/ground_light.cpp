@@ -10,18 +10,6 @@
 
 namespace sunfleck {
 
-std::vector<Vec3> sun_directions(const Sun& sun, std::uint32_t samples, std::uint64_t seed) {
-  const double radius = 0.5 * sun.angular_diameter_deg * std::numbers::pi / 180.0;
-  Vec3 u, v;
-  orthonormal_frame(sun.direction, u, v);
-  std::vector<Vec3> out;
-  for (std::uint32_t i = 0; i < samples; ++i) {
-    const double r = radius * std::sqrt((i + 0.5) / samples), a = 2.399963229728653 * i + 2.0 * std::numbers::pi * unit_interval(mix(seed));
-    out.push_back(glm::normalize(sun.direction + std::tan(r) * (std::cos(a) * u + std::sin(a) * v)));
-  }
-  return out;
-}
-
 std::size_t GroundView::bytes() const {
   std::size_t total = bytes_of(area) + bytes_of(ends) + bytes_of(sky_seen);
   for (const auto* list : {&sky, &lit, &sunlit})
@@ -55,7 +43,7 @@ GroundView view_from_ground(const Scene& scene, const std::vector<Triangle>& gro
   GroundView out = empty_ground_view(scene, ground, lights, rays);
   const std::size_t facets = ground.size();
   std::vector<std::vector<Vec3>> disc;
-  for (const auto* sun : lights.suns) disc.push_back(sun_directions(*sun, std::max(sun_samples, 4u) * 8, mix(seed, 3)));
+  for (const auto* sun : lights.suns) disc.push_back(sun_disc(*sun, std::max(sun_samples, 4u) * 8, mix(seed, 3)));
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, facets, 16), [&](const auto& range) {
     for (std::size_t f = range.begin(); f < range.end() && !progress.cancelled(); ++f) {
       if (!out.seen[2 * f]) continue;

@@ -34,7 +34,4 @@ GroundView empty_ground_view(const Scene& scene, const std::vector<Triangle>& gr
 GroundView view_from_ground(const Scene& scene, const std::vector<Triangle>& ground, const Surroundings& around, const LightSources& lights,
                             std::uint32_t rays, std::uint32_t sun_samples, std::uint64_t seed, Progress& progress);
 
-/// Points of the sun's disc that each stand for the same solid angle (sunflower spiral).
-std::vector<Vec3> sun_directions(const Sun& sun, std::uint32_t samples, std::uint64_t seed);
-
 }  // namespace sunfleck

@@ -21,9 +21,8 @@ void write_ground_rows(const SceneLight& s, const std::vector<float>& e, Irradia
         irradiance[((state * n + f) * 2 + side) * s.bands + band] += share * value;
         const double area = s.ground.area[part];
         balance.incident += area * s.ground_direct(i, c);
-        balance.ground +=
-            area * value *
-            (1.0 - (side == 0 ? optics.reflectance_front[band] : optics.reflectance_back[band]) - optics.transmittance[band]);
+        balance.ground += area * value *
+                          (1.0 - (side == 0 ? optics.reflectance_front[band] : optics.reflectance_back[band]) - optics.transmittance[band]);
         balance.escaped += area * b[i * s.columns + c] * s.ground.sky_seen[i];
         if (const auto sun = s.lights.sun_of_state[state]; sun != LightSources::none && band == 0)
           sunlit[(state * n + f) * 2 + side] += share * s.ground.sunlit[sun][i];

@@ -58,7 +58,7 @@ void SceneLight::project_sun() {
   solved.copies.resize(members.size());
   for (const auto* sun : lights.suns) {
     lit.push_back(
-        lit_cells(solved, sun_directions(*sun, density.sun_samples, mix(seed, sun_stream)), sun_pitch, mix(seed, sun_stream, 1), progress));
+        lit_cells(solved, sun_disc(*sun, density.sun_samples, mix(seed, sun_stream)), sun_pitch, mix(seed, sun_stream, 1), progress));
     sun_fragments += lit.back().fragments;
     std::size_t bytes = 0;
     for (const auto& one : lit) bytes += bytes_of(one.lit);
@@ -113,8 +113,8 @@ std::uint32_t SceneLight::begin_own(std::uint32_t copy) {
   for (auto at = gone.rbegin(); at != gone.rend(); ++at) shade.copies.erase(shade.copies.begin() + *at);
   shade.copies.push_back({static_cast<std::uint32_t>(shade.surfaces.size() - 1), member.map.affine()});
   for (const auto* sun : lights.suns)
-    own_lit.push_back(lit_cells(shade, sun_directions(*sun, density.sun_samples, mix(seed, sun_stream)), sun_pitch,
-                                mix(seed, sun_stream, 1), progress, static_cast<std::uint32_t>(shade.copies.size() - 1)));
+    own_lit.push_back(lit_cells(shade, sun_disc(*sun, density.sun_samples, mix(seed, sun_stream)), sun_pitch, mix(seed, sun_stream, 1),
+                                progress, static_cast<std::uint32_t>(shade.copies.size() - 1)));
   gather_fragments += light.coarse->fragments;
   const std::size_t apart = light.bytes() - light.coarse->bytes();
   std::size_t sun = 0;

@@ -23,6 +23,14 @@ double pitch_for(double organ_area, double lines) {
   return std::sqrt(0.5 * organ_area / lines);
 }
 
+/// Points of the sun's disc, each with a grid of its own: enough for the penumbrae, while some lines of each still meet every organ.
+std::uint32_t sun_samples(const Sun& sun, const Surface& surface, double organ_area, const RadiosityDensity& density) {
+  constexpr double fewest_lines = 8.0;  ///< of one grid on an organ
+  const auto most = static_cast<std::uint32_t>(density.sun_lines_per_organ / fewest_lines);
+  const auto wanted = sun_disc_points(sun, density.sun_samples, surface.longest_way(sun.direction), organ_area);
+  return std::max(density.sun_samples, std::min(wanted, most));
+}
+
 /// Element means of a per-side quantity take the place of what no line has met; where none met a whole element (a sliver, a speck), the
 /// mean of its organ.
 void fill_unsampled(const Elements& e, const std::vector<bool>& unsampled, std::vector<float>& value) {
@@ -89,26 +97,34 @@ double cell_area(const Elements& e, std::size_t cell) {
   return e.surface.split[t] > 0 ? static_cast<double>(e.surface.cell_area[t]) : 0.0;
 }
 
+/// Area that one line stands for, on plants and on the ground: the nominal one in periodic scenes, whose lines fill the cell. In a finite
+/// scene the lines that meet plants sample their area too: taken by their number, plates that see the whole sun or sky get all of it.
+struct AreaOfLine {
+  double of[2];  ///< [plants, ground]
+
+  template <class Area>  // of a cell
+  AreaOfLine(const FacetScene& facets, const Elements& e, const std::vector<float>& lines_met, double nominal, Area&& area_of)
+      : of{nominal, nominal} {
+    if (e.surface.periodic) return;
+    double area[2] = {0, 0}, lines[2] = {0, 0};
+    for (std::size_t c = 0; c < lines_met.size(); ++c) {
+      area[is_ground(facets, e, c)] += area_of(c);
+      lines[is_ground(facets, e, c)] += lines_met[c];
+    }
+    for (int g = 0; g < 2; ++g)
+      if (lines[g] > 0.0) of[g] = area[g] / lines[g];
+  }
+};
+
 /// Sums over lines become means over each cell's lines.
 void normalise(const FacetScene& facets, const Elements& e, const std::vector<float>& all, const std::vector<bool>& unsampled,
                double area_of_line, std::vector<float>& value) {
   Conservation conservation;
-  // in a finite scene the lines that meet plants sample their area too: taken by their number, not by their nominal area, plates that see
-  // the whole sky get all of it
-  double per_line[2] = {area_of_line, area_of_line};
-  if (!e.surface.periodic) {
-    double area[2] = {0, 0}, lines[2] = {0, 0};
-    for (std::size_t c = 0; c < all.size(); ++c) {
-      area[is_ground(facets, e, c)] += cell_area(e, c);
-      lines[is_ground(facets, e, c)] += all[c];
-    }
-    for (int g = 0; g < 2; ++g)
-      if (lines[g] > 0.0) per_line[g] = area[g] / lines[g];
-  }
+  const AreaOfLine per_line(facets, e, all, area_of_line, [&](std::size_t c) { return cell_area(e, c); });
   for (std::size_t c = 0; c < all.size(); ++c) {
     if (unsampled[c]) continue;
     const bool ground = is_ground(facets, e, c);
-    conservation.add(ground, (static_cast<double>(value[2 * c]) + value[2 * c + 1]) * per_line[ground], 0.0);
+    conservation.add(ground, (static_cast<double>(value[2 * c]) + value[2 * c + 1]) * per_line.of[ground], 0.0);
     for (int side = 0; side < 2; ++side) value[2 * c + side] /= all[c];
   }
   fill_unsampled(e, unsampled, value);
@@ -211,12 +227,10 @@ class DirectLightSolver {
   void sun(const Sun& sun) {
     const auto& density = settings_.density;
     const std::size_t cells = s_.cells();
-    const std::uint32_t samples = density.sun_samples;
+    const auto samples = sun_samples(sun, s_, e_.organ_area, density);
     const double pitch = pitch_for(e_.organ_area, density.sun_lines_per_organ / samples);
-    const double radius = 0.5 * sun.angular_diameter_deg * std::numbers::pi / 180.0;
-    Vec3 u, v;
-    orthonormal_frame(sun.direction, u, v);
     const auto seed = mix(settings_.seed, sun_stream);
+    const auto disc = sun_disc(sun, samples, seed);
     // a few samples at a time, for memory's sake; sums in the samples' order
     constexpr std::uint32_t batch = 4;
     std::vector<VisibleCounts> counts(std::min(batch, samples));
@@ -226,10 +240,8 @@ class DirectLightSolver {
     for (std::uint32_t first = 0; first < samples; first += batch) {
       const std::uint32_t n = std::min(batch, samples - first);
       tbb::parallel_for(std::uint32_t{0}, n, [&](std::uint32_t k) {
-        // points of the disc on a sunflower spiral: equal areas
         const std::uint32_t i = first + k;
-        const double r = radius * std::sqrt((i + 0.5) / samples), a = 2.399963229728653 * i + 2.0 * std::numbers::pi * unit_interval(seed);
-        Vec3 d = glm::normalize(sun.direction + std::tan(r) * (std::cos(a) * u + std::sin(a) * v));
+        Vec3 d = disc[i];
         if (d.z < 1e-3 && s_.periodic) d = glm::normalize(Vec3{d.x, d.y, 1e-3});
         clear(counts[k], cells);
         const auto p = project_set_member(s_, d, i, pitch, mix(seed, 1));
@@ -253,9 +265,12 @@ class DirectLightSolver {
           static_cast<float>(s_.normal[0][t] * sun.direction.x + s_.normal[1][t] * sun.direction.y + s_.normal[2][t] * sun.direction.z);
     std::vector<bool> unsampled(cells);
     Conservation conservation;
+    const auto shadow = [&](std::size_t c) { return cell_area(e_, c) * std::fabs(cosine[e_.row_of_cell[c]]); };
+    const AreaOfLine per_line(facets_, e_, all, line_area / samples, shadow);
     double total = 0;
     for (std::size_t c = 0; c < cells; ++c) {
-      conservation.add(is_ground(facets_, e_, c), visible[c] * line_area / samples, 0.0);
+      const bool ground = is_ground(facets_, e_, c);
+      conservation.add(ground, visible[c] * per_line.of[ground], 0.0);
       total += all[c];
       unsampled[c] = all[c] == 0.0f;
       if (all[c] > 0.0f) lit[2 * c + (cosine[e_.row_of_cell[c]] > 0.0f ? 0 : 1)] = visible[c] / all[c];
@@ -271,10 +286,8 @@ class DirectLightSolver {
         lit[2 * c + 1] = front ? 0.0f : fraction;
       }
     out_.fragments += static_cast<std::uint64_t>(total);
-    const auto power = [&](std::size_t c) {
-      return cell_area(e_, c) * std::fabs(cosine[e_.row_of_cell[c]]) * (static_cast<double>(lit[2 * c]) + lit[2 * c + 1]);
-    };
-    for (std::size_t c = 0; c < cells; ++c) conservation.add(is_ground(facets_, e_, c), 0.0, power(c));
+    for (std::size_t c = 0; c < cells; ++c)
+      conservation.add(is_ground(facets_, e_, c), 0.0, shadow(c) * (static_cast<double>(lit[2 * c]) + lit[2 * c + 1]));
     for (std::size_t c = 0; c < cells; ++c)
       for (int side = 0; side < 2; ++side)
         lit[2 * c + side] = std::min(1.0f, lit[2 * c + side] * conservation.factor(is_ground(facets_, e_, c)));

@@ -9,12 +9,12 @@ namespace {
 
 RadiosityDensity beyond_fine() {
   auto d = density_of(Quality::fine);
-  d.directions = 320;
+  d.directions = 896;
   d.lines_per_element *= 1.4;
   d.elements_per_organ *= 1.5;
   d.sky_directions = 460;
   d.sky_lines_per_organ *= 1.6;
-  d.sun_samples = 12;
+  d.sun_samples = 16;
   d.sun_lines_per_organ *= 2.5;
   d.link_error /= 1.5;
   d.fewest_hits *= 1.4;

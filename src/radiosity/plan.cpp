@@ -118,11 +118,16 @@ class Planner {
   void scattering() {
     std::optional<ClusterTree> tree;
     if (settings_.method == RadiosityMethod::clustering) tree = make_cluster_tree(facets_, elements_);
-    const Pilot few = pilot(tree ? &*tree : nullptr, 8), more = pilot(tree ? &*tree : nullptr, 16);
+    // a tenth of the directions, and a quarter of these for how links grow with them: of later directions more find a pair that is known.
+    // In a small scene soon most pairs are known; a quarter costs little there.
+    const std::uint32_t pairs = settings_.density.directions / (plan_.elements < 5000 ? 8 : 20);
+    const std::uint32_t pilot_directions = std::max(16u, 2 * pairs), fewer = pilot_directions / 8 * 2;
+    const Pilot few = pilot(tree ? &*tree : nullptr, fewer), more = pilot(tree ? &*tree : nullptr, pilot_directions);
     if (tree && !more.clustered) tree.reset();
     plan_.clusters = tree ? tree->size() : 0;
-    const double directions = settings_.density.directions, times = directions / 16.0;
-    const double exponent = few.near > 0 ? std::clamp(std::log2(more.near / few.near), 0.0, 1.0) : 1.0;
+    const double directions = settings_.density.directions, times = directions / pilot_directions;
+    const double exponent =
+        few.near > 0 ? std::clamp(std::log(more.near / few.near) / std::log(double(pilot_directions) / fewer), 0.0, 1.0) : 1.0;
     plan_.line_fragments = whole(more.fragments * times);
     const double near = more.near * std::pow(times, exponent), far = more.far * times;
     plan_.links = whole(near + far);

@@ -13,6 +13,15 @@ std::size_t Surface::bytes() const {
   return total;
 }
 
+double Surface::longest_way(const Vec3& direction) const {
+  if (focus.empty()) return 0.0;
+  const Vec3 size = focus.size();
+  double way = glm::length(size) + (periodic ? size.z * 1e6 : 0.0);  // a level ray through a periodic scene has no end
+  for (int axis = periodic ? 2 : 0; axis < 3; ++axis)
+    if (direction[axis] != 0.0) way = std::min(way, size[axis] / std::fabs(direction[axis]));
+  return way;
+}
+
 Surface make_surface(const FacetScene& scene, const std::vector<std::uint32_t>& order, const std::vector<std::uint16_t>& split,
                      bool ground_is_flat) {
   Surface s;

@@ -34,7 +34,7 @@ std::vector<double> powers(const Scene& scene, RadiosityMethod method, std::size
 struct Sample {
   std::vector<double> mean, variance;
 };
-constexpr int seeds = 8;
+constexpr int seeds = 24;
 Sample sample(const Scene& scene, RadiosityMethod method, std::uint64_t first_seed, Quality quality = Quality::draft,
               std::size_t copies = 1) {
   std::vector<double> sum, square;

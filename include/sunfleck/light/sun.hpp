@@ -1,6 +1,7 @@
 // The sun as a disc, and its position from time and place.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,15 @@ struct Sun {
   std::vector<double> irradiance;      ///< per band, on a plane that faces the sun [W m^-2]
   double angular_diameter_deg = 0.53;  ///< 0 = a point
 };
+
+/// Unit vectors towards points of the disc that each stand for the same solid angle: a sunflower spiral (Vogel 1979,
+/// doi:10.1016/0025-5564(79)90080-4), turned by an angle that depends on the seed.
+std::vector<Vec3> sun_disc(const Sun& sun, std::uint32_t points, std::uint64_t seed);
+
+/// Points of the disc that a shadow needs: `fewest` x (1 + w), where w is the width of the penumbra over that of a leaf, for a ray that
+/// goes on for `way` [m] behind what it grazes, among leaves of `leaf_area` [m^2]. Where leaves are narrower than their penumbrae, each
+/// point of the disc casts a shadow pattern of its own, and few points are few samples of it.
+std::uint32_t sun_disc_points(const Sun& sun, std::uint32_t fewest, double way, double leaf_area);
 
 /// Unit vector towards the sun from its elevation above the horizon and its azimuth from north over east [degrees].
 Vec3 direction_from_angles(double elevation_deg, double azimuth_deg);

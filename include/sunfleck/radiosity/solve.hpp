@@ -20,7 +20,7 @@ struct RadiosityDensity {
   double elements_per_organ;     ///< elements of an organ of the mean size [-]
   std::uint32_t sky_directions;  ///< directions for the sky's visibility, method direct alone: else the global lines bring it [-]
   double sky_lines_per_organ;    ///< per direction [-]
-  std::uint32_t sun_samples;     ///< points of the sun's disc, each with a grid of its own [-]
+  std::uint32_t sun_samples;     ///< fewest points of the sun's disc, each with a grid of its own; more for wide penumbrae [-]
   double sun_lines_per_organ;    ///< over all sun samples together [-]
   double link_error;             ///< threshold of the refinement oracle, relative to the mean irradiance [-]
   double tolerance;              ///< relative true residual of the iteration [-]

@@ -28,6 +28,8 @@ struct Surface {
   std::size_t size() const { return split.size(); }
   std::size_t cells() const { return first_cell.back(); }
   std::size_t bytes() const;
+  /// Length of the longest way that a straight line can go through the focus box; the horizontal bounds of periodic scenes are open.
+  double longest_way(const Vec3& direction) const;
 };
 
 /// Number of the cell that holds barycentric (u, v) in a triangle split k times: rows of constant v, each from low to high u.
