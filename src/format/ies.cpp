@@ -25,7 +25,7 @@ class Numbers {
         rest_ = line;
       else
         throw InputError(location(file_, lines_.number()), "the end of the file", what);
-    double value;
+    double value = 0;
     if (!to_number(word, value)) throw InputError(where(), in_quotes(word), what);
     if (!std::isfinite(value)) throw InputError(where(), in_quotes(word), what + ", finite");
     return value;

@@ -22,7 +22,7 @@ constexpr double pi = std::numbers::pi;
 
 struct Object {
   std::string file, group;
-  Vec3 position;
+  Vec3 position{0.0};
   double scale = 1, azimuth = 0, inclination = 0, turn = 0;  ///< [rad] from +x over +y
   long line = 0;
 };
@@ -50,7 +50,11 @@ class OpsReader {
 
   void read() {
     check_readable(file_);
-    const std::string text = read_whole(file_);
+    std::string text = read_whole(file_);
+    if (!is_utf8(text)) {
+      text = from_latin1(text);
+      out_.notes.push_back("the .ops is no UTF-8: its letters are taken for Latin-1");
+    }
     Lines lines(text);
     std::string_view line;
     std::set<std::int64_t> ids;
@@ -214,9 +218,9 @@ class OpsReader {
         text += fmt::format("  {{ position = [{}, {}, {}]", o.position.x, o.position.y, o.position.z);
         if (o.scale != 1) text += fmt::format(", scale = {}", o.scale);
         if (o.turn != 0) text += ", turn = " + degrees(o.turn);
-        if (o.inclination != 0) {  // leans towards azimuth from +x over +y; ours counts from +y over +x, and tilts are not negative
-          const double lean = o.inclination < 0 ? o.azimuth + pi : o.azimuth;
-          text += fmt::format(", tilt = {}, tilt_azimuth = {}", degrees(std::fabs(o.inclination)),
+        if (o.inclination != 0) {  // leans towards azimuth from +x over +y; ours counts from +y over +x, and tilts go from 0 to 180
+          const double inclination = std::remainder(o.inclination, 2 * pi), lean = inclination < 0 ? o.azimuth + pi : o.azimuth;
+          text += fmt::format(", tilt = {}, tilt_azimuth = {}", degrees(std::fabs(inclination)),
                               degrees(std::remainder(pi / 2 - lean, 2 * pi)));
         }
         text += " },\n";

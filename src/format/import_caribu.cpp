@@ -115,6 +115,7 @@ class OptReader {
 
 std::vector<LightDirection> read_light(const std::string& file) {
   std::vector<LightDirection> out;
+  double sum = 0;
   each_line(file, [&](Words& words, long number) {
     const auto first = words.next();
     if (first.empty() || first[0] == '#') return;
@@ -125,10 +126,12 @@ std::vector<LightDirection> read_light(const std::string& file) {
                        "a number that is not negative: irradiance of a horizontal plane");
     const Vec3 v = read_point(words, file, number, "a direction");
     if (!words.rest().empty()) throw InputError(where, in_quotes(words.rest()), "four numbers: energy and direction");
-    const double length = glm::length(v);
-    if (!(length > 0) || !(v.z < 0))
-      throw InputError(where, fmt::format("direction {} {} {}", v.x, v.y, v.z), "one that goes down (z below 0)");
-    if (energy > 0) out.push_back({energy, -v / length, number});
+    const Vec3 towards = -glm::normalize(v / std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)}));  // no square overflows
+    if (!(towards.z > 0)) throw InputError(where, fmt::format("direction {} {} {}", v.x, v.y, v.z), "one that goes down (z below 0)");
+    sum += energy;
+    if (!std::isfinite(energy / towards.z) || !std::isfinite(sum))
+      throw InputError(where, fmt::format("energy {}", energy), "one so small that its beam, and the sum of all, are finite");
+    if (energy > 0) out.push_back({energy, towards, number});
   });
   if (out.empty()) throw InputError(file, "no light", "lines \"ENERGY VX VY VZ\" with an energy above zero");
   return out;

@@ -13,7 +13,7 @@ namespace sunfleck {
 ImportedScene import_amap(const ImportChoice& choice, const std::string& ops);
 ImportedScene import_caribu(const ImportChoice& choice);
 
-/// A TOML string with its quotes.
+/// A TOML string with its quotes. InputError if it is no UTF-8.
 std::string toml_text(const std::string& text);
 /// "{ PAR = 0.1, NIR = 0.2 }"; bare keys where TOML allows them.
 std::string band_table(const std::vector<std::string>& bands, const std::vector<double>& values);

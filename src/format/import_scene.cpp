@@ -7,15 +7,17 @@
 #include <fmt/format.h>
 
 #include <format/import_parts.hpp>
+#include <format/text.hpp>
 #include <sunfleck/core/error.hpp>
 
 namespace sunfleck {
 
 std::string toml_text(const std::string& text) {
+  if (!is_utf8(text)) throw InputError(in_quotes(from_latin1(text)), "bytes that are no UTF-8", "a name in UTF-8, as scene files are");
   std::string out = "\"";
   for (const char c : text) {
     if (c == '"' || c == '\\') out += '\\';
-    if (static_cast<unsigned char>(c) < 0x20)
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F)
       out += fmt::format("\\u{:04x}", static_cast<unsigned char>(c));
     else
       out += c;

@@ -14,6 +14,11 @@ namespace sunfleck {
 /// The bytes of a file. InputError if it is missing, a folder, or cannot be read.
 std::string read_whole(const std::string& file);
 
+/// Whether the bytes are UTF-8 (RFC 3629): no over-long forms, surrogates, or code points above U+10FFFF.
+bool is_utf8(std::string_view bytes);
+/// Bytes of ISO 8859-1 as UTF-8.
+std::string from_latin1(std::string_view bytes);
+
 /// InputError unless the file exists and is not a folder.
 void check_readable(const std::string& file);
 

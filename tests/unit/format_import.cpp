@@ -1,5 +1,6 @@
 #include <catch2/catch.hpp>
 
+#include <cstring>
 #include <numbers>
 
 #include <sunfleck/format/import_scene.hpp>
@@ -102,6 +103,24 @@ TEST_CASE("AMAP scenes without a column for the scale, with several scenes, or b
     auto choice = files.choice({"a.ops"});
     choice.degrees = true;
     CHECK(glm::length(files.read(choice).plants[0].placements[0].map.vector({1, 0, 0}) - Vec3{0, 1, 0}) < 1e-10);
+  }
+  SECTION("inclined by more than half a turn") {
+    Case files({{"tree.opf", leaf_opf}, {"a.ops", "1 1 tree.opf 0 0 0 1 0 5 0\n1 2 tree.opf 0 0 0 1 0 -1.2831853071795865 0\n"}});
+    const Scene scene = files.read(files.choice({"a.ops"}));
+    const auto &over = scene.plants[0].placements.at(0).map, &back = scene.plants[0].placements.at(1).map;
+    CHECK(glm::length(over.vector({0, 0, 1}) - Vec3{std::sin(5.0), 0, std::cos(5.0)}) < 1e-10);
+    CHECK(glm::length(over.vector({0, 0, 1}) - back.vector({0, 0, 1})) < 1e-10);
+  }
+  SECTION("letters of Latin-1") {
+    Case files({{"p\u00eacher.opf", leaf_opf},
+                {"a.ops",
+                 "#[Archimed] P\xEA"
+                 "cher\x7F\n1 1 p\xEA"
+                 "cher.opf 0 0 0 1 0 0 0\n"},
+                {"b.ops", "#[Archimed] P\u00eacher\n1 1 p\u00eacher.opf 0 0 0 1 0 0 0\n"}});
+    CHECK(files.read(files.choice({"a.ops"})).plants[0].name == "P\u00eacher\x7F");
+    CHECK(files.notes.at(0) == "the .ops is no UTF-8: its letters are taken for Latin-1");
+    CHECK(files.read(files.choice({"b.ops"})).plants[0].name == "P\u00eacher");
   }
   SECTION("several scenes") {
     Case files({{"tree.opf", leaf_opf}, {"a.ops", "1 1 tree.opf 0 0 0 1 0 0 0\n2 1 tree.opf 5 0 0 1 0 0 0\n"}});
@@ -214,6 +233,8 @@ TEST_CASE("CARIBU files that are broken or do not belong together", "[format][im
               {"e.opt", "e s 0.1\n"},
               {"up.light", "1 0 0 1\n"},
               {"three.light", "1 0 0\n"},
+              {"flat.light", "1e308 1e9 0 -1\n"},
+              {"bright.light", "1e308 0 0 -1\n\n1e308 0 0 -1e308\n"},
               {"bad.8", "0 0 1\n"}});
   const auto message = [&](const std::vector<std::string>& names) { return files.message([&] { files.read(files.choice(names)); }); };
   CHECK(message({"plants.can", "a.opt"}) == "a.opt: found 1 species; expected species 2, which plants.can has");
@@ -223,6 +244,9 @@ TEST_CASE("CARIBU files that are broken or do not belong together", "[format][im
   CHECK(message({"plants.can", "d.opt"}).find("d.opt:2: found no reflectance of the upper side of species 1") == 0);
   CHECK(message({"plants.can", "e.opt"}) == "e.opt:1: found \"s\"; expected \"d\": diffuse, the only kind of surface there is here");
   CHECK(message({"plants.can", "up.light"}) == "up.light:1: found direction 0 0 1; expected one that goes down (z below 0)");
+  for (const char* line : {"flat.light:1", "bright.light:3"})
+    CHECK(message({"plants.can", std::string(line, std::strchr(line, ':'))}) ==
+          std::string(line) + ": found energy 1e+308; expected one so small that its beam, and the sum of all, are finite");
   CHECK(message({"plants.can", "three.light"}).find("three.light:1: found") == 0);
   CHECK(message({"plants.can", "bad.8"}) == "bad.8: found 3 numbers; expected four: xmin ymin, and below xmax ymax");
   CHECK_THROWS_WITH(files.read(files.choice({"a.opt"})), "found no .can; expected one beside .opt, .light and .8");
