@@ -1,10 +1,13 @@
 #include "original/entry.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <type_traits>
 
 #include <sunfleck/core/sha256.hpp>
+
+#include "original/harmonics.hpp"
 
 namespace sunfleck {
 
@@ -40,6 +43,12 @@ class Reader {
     std::memcpy(static_cast<void*>(&value), bytes_.data(), sizeof value);
     bytes_.remove_prefix(sizeof value);
   }
+  void get(bool& value) {  // a byte that is neither 0 nor 1 is no bool
+    std::uint8_t byte = 0;
+    get(byte);
+    sound = sound && byte <= 1;
+    value = byte == 1;
+  }
   template <class T>
   void get(std::vector<T>& values) {
     std::uint64_t count = 0;
@@ -66,9 +75,23 @@ void each(Stream&, Tables& t, Call&& call) {
 }
 
 bool finite(const std::vector<double>& values) {
-  for (const double v : values)
-    if (!std::isfinite(v)) return false;
-  return true;
+  return std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
+}
+
+bool finite(const Vec3& v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+/// Numbers of the right sizes, and finite where light is reckoned with them.
+bool plausible(const OriginalTables& t) {
+  using Basis = TableSettings::Basis;
+  if (t.basis == Basis::harmonics ? t.order > highest_order : t.basis != Basis::directions) return false;
+  const std::size_t n = t.size(), bands = t.errors.size();
+  if (t.bands != bands || bands == 0 || t.intercepted.size() != n || t.absorbed.size() != bands * n || t.phase.size() != bands * n * n ||
+      t.sigma.size() != 49)
+    return false;
+  return finite(t.sigma) && finite(t.intercepted) && finite(t.absorbed) && finite(t.phase) && std::isfinite(t.area_m2) &&
+         std::all_of(t.hull.begin(), t.hull.end(), [](const Triangle& h) { return finite(h[0]) && finite(h[1]) && finite(h[2]); });
 }
 
 }  // namespace
@@ -93,11 +116,7 @@ std::optional<OriginalTables> from_entry(std::string_view bytes, const std::stri
   reader.get(order);
   OriginalTables t;
   each(reader, t, [&](auto& value) { reader.get(value); });
-  const std::size_t n = t.size();
-  if (order != byte_order || !reader.done() || t.intercepted.size() != n || t.absorbed.size() != t.bands * n ||
-      t.phase.size() != t.bands * n * n || t.errors.size() != t.bands || t.sigma.size() != 49)
-    return {};
-  if (!finite(t.sigma) || !finite(t.intercepted) || !finite(t.absorbed) || !finite(t.phase)) return {};
+  if (order != byte_order || !reader.done() || !plausible(t)) return {};
   return t;
 }
 

@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include <sunfleck/core/error.hpp>
+#include <sunfleck/core/sha256.hpp>
 #include <sunfleck/format/ies.hpp>
 #include <sunfleck/format/import_scene.hpp>
 #include <sunfleck/format/read_plant.hpp>
@@ -21,6 +22,7 @@
 #include <sunfleck/scene/counts.hpp>
 
 #include "fuzz/h5_recipe.hpp"
+#include "original/entry.hpp"
 
 namespace sunfleck::fuzz {
 
@@ -99,6 +101,16 @@ void read_and_write_policy(Bytes bytes) {
   }
 }
 
+/// The numbers of a cache entry under a head that fits them, which random bytes do not find.
+void read_original(Bytes bytes) {
+  const std::string key(64, '0'), numbers(bytes.begin(), bytes.end());
+  const auto tables = from_entry("sunfleck-original 1\n" + key + "\n" + sha256_hex(numbers) + "\n" + numbers, key);
+  if (!tables) throw InputError("entry", "another", "one that was written");
+  if (!from_entry(to_entry(*tables, key), key)) throw std::logic_error("an entry is not read back");
+  (void)tables->transmittance({0, 0, 1}), (void)tables->scattered({0.6, 0, 0.8}, {0, 0.6, -0.8}, 0);
+  (void)transformed(*tables, Mat3(2.0));
+}
+
 /// What an import lets through is a scene that is read.
 void import_with(std::vector<std::string> files) {
   ImportChoice choice;
@@ -137,6 +149,7 @@ const std::map<std::string, std::function<void(Bytes)>>& readers() {
          import_with({folder().file("field.can"), folder().put("fuzzed.opt", b)});
        }},
       {"opf", [](Bytes b) { read_plant_as("plant.opf", b); }},
+      {"original", [](Bytes b) { read_original(b); }},
       {"pattern",
        [](Bytes b) {
          import_with({folder().file("field.can"), folder().file("par.opt"), folder().put("fuzzed.8", b)});
@@ -174,6 +187,8 @@ bool feed(const std::string& format, Bytes bytes) {
     reader->second(bytes);
     return true;
   } catch (const InputError&) {
+    return false;
+  } catch (const UsageError&) {  // a file that leaves a choice to its user: an .ops with several scenes
     return false;
   }
 }

@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 
 #include <chrono>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -10,6 +11,8 @@
 
 #include <scratch_folder.hpp>
 #include <sunfleck/original/cache.hpp>
+
+#include "original/entry.hpp"
 
 using namespace sunfleck;
 
@@ -104,6 +107,27 @@ TEST_CASE("Damaged and foreign entries are noticed and rebuilt", "[original][cac
     if (other != path) fs::copy_file(other, path, fs::copy_options::overwrite_existing);
   cache.tables(leaf(), coarse(), state);
   CHECK(state == CacheState::rebuilt);
+}
+
+TEST_CASE("An entry whose numbers do not belong together is none, though its checksum holds", "[original][cache]") {
+  const std::string key(64, 'a');
+  OriginalTables sound;
+  sound.order = 1;
+  sound.sigma.assign(49, 0.1), sound.intercepted.assign(4, 0.1), sound.absorbed.assign(4, 0.1), sound.phase.assign(16, 0.1);
+  sound.errors.resize(1);
+  CHECK(from_entry(to_entry(sound, key), key));
+  std::vector<OriginalTables> broken(6, sound);
+  broken[0].order = 7;  // beyond the highest, in sizes that fit
+  broken[0].intercepted.resize(64), broken[0].absorbed.resize(64), broken[0].phase.resize(64 * 64);
+  broken[1].basis = static_cast<TableSettings::Basis>(7);
+  broken[2].bands = 2;
+  broken[3].bands = 0, broken[3].errors.clear(), broken[3].absorbed.clear(), broken[3].phase.clear();
+  broken[4].phase[3] = std::nan("");
+  broken[5].hull = {{Vec3{0, 0, 0}, Vec3{1, 0, 0}, Vec3{0, std::nan(""), 0}}};
+  for (std::size_t i = 0; i < broken.size(); ++i) {
+    INFO(i);
+    CHECK_FALSE(from_entry(to_entry(broken[i], key), key));
+  }
 }
 
 TEST_CASE("The cache is bounded: what was not used for longest goes", "[original][cache]") {
