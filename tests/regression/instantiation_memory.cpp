@@ -8,6 +8,7 @@
 
 #include "radiosity_runs.hpp"
 #include "run_program.hpp"
+#include "sanitized.hpp"
 
 using namespace sunfleck;
 using namespace radiosity_runs;
@@ -94,6 +95,10 @@ TEST_CASE("instantiation: what each part holds, to 5 %") {
 }
 
 TEST_CASE("instantiation: the process's own peak is within 1.3 of what is counted") {
+  if (sanitized) {
+    WARN("skipped: a sanitizer's shadow memory and kept-back blocks are part of the process's peak");
+    return;
+  }
   const TemporaryFolder folder;
   std::string text =
       "bands = [\"PAR\", \"NIR\"]\n[sun]\nelevation = 42.0\nazimuth = 225.0\nirradiance = { PAR = 390.0, NIR = 440.0 }\n"
