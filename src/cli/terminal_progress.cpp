@@ -1,5 +1,6 @@
 #include "cli/terminal_progress.hpp"
 
+#include <cmath>
 #include <csignal>
 
 #include <sys/ioctl.h>
@@ -76,7 +77,7 @@ std::string time_left(double seconds, double done) {
   if (seconds < 1 || !(done >= 0.02)) return {};
   const double left = seconds * (1 - done) / done;
   if (left < 100) return fmt::format("{:.0f} s left", left);
-  const auto minutes = static_cast<long>(left / 60 + 0.5);
+  const long minutes = std::lround(left / 60);
   if (minutes < 100) return fmt::format("{} min left", minutes);
   return fmt::format("{} h {:02} min left", minutes / 60, minutes % 60);
 }

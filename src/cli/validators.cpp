@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -39,7 +40,7 @@ CLI::Validator count_from(double low, double high) {
 
 CLI::Validator one_of(std::vector<std::string> names) {
   return CLI::Validator(
-      [names](std::string& text) {
+      [names = std::move(names)](std::string& text) {
         for (const auto& name : names)
           if (text == name) return std::string();
         const std::string near = nearest_name(text, names);
