@@ -88,6 +88,14 @@ MethodChoice choose_method(const std::optional<std::string>& method, const std::
   return choice;
 }
 
+void refuse_depth(const Scene& scene, const std::string& method) {
+  if (method == "instantiation" || (scene.solve.only.empty() && scene.solve.stop_at.empty())) return;
+  const bool stops = !scene.solve.stop_at.empty();
+  if (stops || method != "reference")
+    throw InputError(location(scene.file, 0, stops ? "solve.stop_at" : "solve.only"), "it with method " + method,
+                     stops ? "method instantiation" : "method instantiation or reference");
+}
+
 RadiosityMethod radiosity_method(const std::string& method) {
   return method == "flat" ? RadiosityMethod::flat : method == "direct" ? RadiosityMethod::direct : RadiosityMethod::clustering;
 }

@@ -35,4 +35,8 @@ std::string name_of(Quality quality);
 /// Of a method that is not the reference.
 RadiosityMethod radiosity_method(const std::string& method);
 
+/// `only` and `stop_at` leave out work where structures are opened one by one, and rays that nobody asks for. Throws InputError where a
+/// method does not know them.
+void refuse_depth(const Scene& scene, const std::string& method);
+
 }  // namespace sunfleck

@@ -151,26 +151,27 @@ void add_figures(const std::vector<std::pair<std::string, std::uint64_t>>& predi
       if (name == part) out.push_back({part, text, amount});
 }
 
-/// Structures that others stand in for until their plant is opened.
-void add_policies(const Scene& scene, const InstantiationSharing& shared, std::vector<PlanItem>& items) {
-  if (shared.structures > 0) {
+/// Structures that others stand in for until their plant is opened; `shared`: null for methods that take every plant as it is.
+void add_policies(const Scene& scene, const std::string& method, const InstantiationSharing* shared, std::vector<PlanItem>& items) {
+  const auto why_not = [&]() -> std::string {
+    if (std::all_of(scene.plants.begin(), scene.plants.end(), [](const auto& p) { return p.policy_file.empty(); }))
+      return "no plant names one";
+    if (!shared) return fmt::format("method '{}' takes every plant as it is, 'instantiation' follows them", method);
+    return scene.periodic ? "in a periodic cell plants share nothing but exact copies" : "no plant that stands once has structures of their classes";
+  };
+  if (!shared || shared->structures == 0)
+    items.push_back({"policies", false, why_not()});
+  else
     items.push_back({"policies", true,
-                     fmt::format("{} of {} that {} opened alone: {} of {} stand for them until then",
-                                 counted(shared.structures, "structure", "structures"), counted(shared.opened_alone, "plant", "plants"),
-                                 shared.opened_alone == 1 ? "is" : "are", counted(shared.copies_of_pieces, "copy", "copies"),
-                                 counted(shared.pieces, "piece", "pieces"))});
-    return;
-  }
-  const bool any = std::any_of(scene.plants.begin(), scene.plants.end(), [](const auto& p) { return !p.policy_file.empty(); });
-  items.push_back({"policies", false,
-                   !any             ? "no plant names one: all share their own geometry alone"
-                   : scene.periodic ? "in a periodic cell plants share their own geometry alone"
-                                    : "no plant that stands once has structures of a class of its policy"});
+                     fmt::format("{} stand for {} of {}, which {} opened one by one with {} own geometry",
+                                 counted(shared->pieces, "piece", "pieces"), counted(shared->structures, "structure", "structures"),
+                                 counted(shared->opened_alone, "plant", "plants"), shared->opened_alone == 1 ? "is" : "are",
+                                 shared->opened_alone == 1 ? "its" : "their")});
 }
 
 /// Originals, their operators, and what copies hold.
-void add_instantiation(const Scene& scene, const MethodChoice& choice, int threads, Progress& progress, Plan& plan) {
-  const PlacedScene placed = place(scene);
+void add_instantiation(const Scene& scene, const PlacedScene& placed, const MethodChoice& choice, int threads, Progress& progress,
+                       Plan& plan) {
   InstantiationSettings settings;
   settings.density = instantiation_density(choice.quality);
   settings.threads = threads;
@@ -181,7 +182,7 @@ void add_instantiation(const Scene& scene, const MethodChoice& choice, int threa
   plan.items.push_back({"originals", true,
                         fmt::format("{} shared by {}: traced once, opened copy by copy",
                                     counted(predicted.originals, "original", "originals"), counted(predicted.copies, "copy", "copies"))});
-  add_policies(scene, predicted, plan.items);
+  add_policies(scene, choice.method, &predicted, plan.items);
   if (predicted.merged_copies > 0)
     plan.items.push_back(
         {"overlap", true,
@@ -212,6 +213,16 @@ void add_instantiation(const Scene& scene, const MethodChoice& choice, int threa
     if (name == "at_once") plan.at_once = bytes;
 }
 
+/// Lines are gone when light is spread along the links, and then only there is light on every facet.
+std::uint64_t most_at_once(const std::vector<PlanFigure>& memory) {
+  std::uint64_t always = 0, before = 0, after = 0;
+  for (const auto& part : memory) {
+    const bool later = part.name == "links" || part.name == "fields" || part.name == "light";
+    (part.name == "lines" ? before : later ? after : always) += part.amount;
+  }
+  return always + std::max(before, after);
+}
+
 /// Elements, links and lines of the radiosity methods.
 void add_radiosity(const Scene& scene, const MethodChoice& choice, Progress& progress, Plan& plan) {
   if (choice.method == "reference") {
@@ -239,6 +250,7 @@ void add_radiosity(const Scene& scene, const MethodChoice& choice, Progress& pro
                            {"fields", "light on elements, iteration"},
                            {"lines", "lines, until they are links"}};
   add_figures(predicted.memory, names, plan.memory);
+  plan.at_once = most_at_once(plan.memory);
   const auto add = [&](const char* name, const char* what, std::uint64_t n) {
     if (n > 0) plan.work.push_back({name, what, n});
   };
@@ -263,6 +275,7 @@ std::uint64_t Plan::memory_total() const {
 }
 
 Plan make_plan(const Scene& scene, const MethodChoice& choice, Progress& progress, std::uint64_t program, int threads) {
+  refuse_depth(scene, choice.method);
   Plan plan;
   plan.choice = choice;
   plan.counts = count(scene);
@@ -271,8 +284,9 @@ Plan make_plan(const Scene& scene, const MethodChoice& choice, Progress& progres
   add_geometry(scene, plan.counts, plan.items);
   add_scattering(scene, choice.method, plan.items);
   add_certificate(scene, choice.method, plan.items);
-  const std::uint64_t facets = plan.counts.facets();
   const bool shares = choice.method == "instantiation";
+  const PlacedScene placed = shares ? place(scene) : PlacedScene{};
+  const std::uint64_t facets = shares ? placed.facets : plan.counts.facets();  // `only` and `stop_at` leave some closed
   if (program > 0) plan.memory.push_back({"program", "the program as it starts", program});
   if (!shares) {
     plan.memory.push_back({"plants", "plants as read", held_bytes(scene)});
@@ -280,13 +294,15 @@ Plan make_plan(const Scene& scene, const MethodChoice& choice, Progress& progres
     plan.memory.push_back({"light", "light on every facet", facets * solution_bytes_per_facet(scene)});
   }
   plan.work = {{"facets", "facets", facets},
-               {"organs", "organs", plan.counts.organs},
+               {"organs", "organs", shares ? placed.organs : plan.counts.organs},
                {"result_bytes", "result bytes before compression", facets * result_bytes_per_facet(scene)}};
-  if (shares)
-    add_instantiation(scene, choice, threads, progress, plan);
-  else
+  if (shares) {
+    add_instantiation(scene, placed, choice, threads, progress, plan);
+  } else {
+    add_policies(scene, choice.method, nullptr, plan.items);
     add_radiosity(scene, choice, progress, plan);
-  if (plan.at_once > 0) plan.at_once += program;
+  }
+  if (shares) plan.at_once += program;
   return plan;
 }
 

@@ -90,15 +90,6 @@ bool mostly_copies(const Scene& scene, const PlacedScene& placed) {
   return placed.facets > 2'000'000 && placed.facets / 4 > unique;
 }
 
-/// `only` and `stop_at` leave out work where structures are opened one by one, and rays that nobody asks for.
-void refuse_depth(const Scene& scene, const std::string& method) {
-  if (method == "instantiation" || (scene.solve.only.empty() && scene.solve.stop_at.empty())) return;
-  const bool stops = !scene.solve.stop_at.empty();
-  if (stops || method != "reference")
-    throw InputError(location(scene.file, 0, stops ? "solve.stop_at" : "solve.only"), "it with method " + method,
-                     stops ? "method instantiation" : "method instantiation or reference");
-}
-
 /// Where the solver counts what it holds at once, the program itself, as it stood before it read anything, is a part of it.
 void count_program(std::size_t bytes_at_start, SolveReport& report) {
   for (auto& [name, bytes] : report.memory)

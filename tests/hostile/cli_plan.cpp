@@ -50,7 +50,7 @@ TEST_CASE("plan knows the policies of a scene, and names its figures as the resu
   INFO(run.err);
   REQUIRE(run.exit_code == 0);
   const auto plan = nlohmann::json::parse(run.out);
-  CHECK(plan["done"]["policies"].get<std::string>().find("of 3 plants that are opened alone") != std::string::npos);
+  CHECK(plan["done"]["policies"].get<std::string>().find("of 3 plants, which are opened one by one") != std::string::npos);
   const auto solved = scene.solve();
   INFO(solved.err);
   REQUIRE(solved.exit_code == 0);
@@ -67,10 +67,16 @@ TEST_CASE("plan knows the policies of a scene, and names its figures as the resu
     REQUIRE(plan["work"].contains(name));
     CHECK(plan["work"][name].get<double>() == Approx(static_cast<double>(amount)).epsilon(0.25));
   }
-  // other methods take no notice of policies, and say so nowhere
-  const auto flat = nlohmann::json::parse(scene.plan("flat").out);
-  CHECK_FALSE(flat["done"].contains("policies"));
-  CHECK_FALSE(flat["left_out"].contains("policies"));
+  CHECK(nlohmann::json::parse(scene.plan("flat").out)["left_out"]["policies"] ==
+        "method 'flat' takes every plant as it is, 'instantiation' follows them");
+}
+
+TEST_CASE("plan refuses, as solve does, to leave parts closed with a method that cannot", "[cli][plan]") {
+  const Poplars scene(branches);
+  const std::string path = scene.folder.file("depth.toml", text_of(scene.path) + "[solve]\nstop_at = \"plant\"\n");
+  const auto plan = run_sunfleck({"plan", path, "--method", "clustering"});
+  CHECK(plan.exit_code == 2);
+  CHECK(plan.err == "sunfleck: " + path + ": solve.stop_at: found it with method clustering; expected method instantiation\n");
 }
 
 TEST_CASE("plan refuses policies as solve does", "[cli][plan]") {

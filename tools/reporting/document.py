@@ -222,7 +222,7 @@ between the qualities at which the error would be just that, and of the certific
 
             biases = ' / '.join('%+.2f' % p.bias('organs', b) for b in bands) if not p.noise else '0 / 0'
             work = ', '.join('%s %s' % ('{:,}'.format(n), k.replace('_', ' ')) for k, n in p.counts.items()
-                             if k in ('links', 'fragments', 'line_fragments', 'direct_fragments', 'sun_fragments', 'rays'))
+                             if k in ('links', 'fragments', 'line_fragments', 'direct_fragments', 'sun_fragments', 'gather_fragments', 'rays', 'gather_rays'))
             rows.append(['path tracing' if p.method == 'reference' else p.method, p.setting, str(len(p.records)), seconds(p.cpu), seconds(p.wall),
                          bytes_text(p.peak), ' | '.join(cell('organs', b) for b in bands), biases, ' / '.join('%.1f' % p.error('facets', b) for b in bands), work])
         head = ['method', 'setting', 'runs', 'CPU s', 'wall s', 'peak'] + ['organs %s %%' % b for b in bands] + ['bias %', 'facets %', 'work']
