@@ -69,6 +69,10 @@ void check_prediction(const Scene& scene, RadiositySettings settings) {
     CHECK(static_cast<double>(figure(plan.memory, "links")) == about(figure(report.memory, "links"), 0.25));
     // the iteration keeps a field for each step that it takes, which optics decide
     CHECK(static_cast<double>(figure(plan.memory, "fields")) == about(figure(report.memory, "fields"), 0.35));
+    std::uint64_t planned = 0, held = 0;
+    for (const char* part : {"elements", "direct", "links", "fields"})
+      planned += figure(plan.memory, part), held += figure(report.memory, part);
+    CHECK(static_cast<double>(planned) == about(held, 0.25));
   }
   CHECK(figure(plan.memory, "lines") > 0);
 }
