@@ -157,16 +157,17 @@ void add_policies(const Scene& scene, const std::string& method, const Instantia
     if (std::all_of(scene.plants.begin(), scene.plants.end(), [](const auto& p) { return p.policy_file.empty(); }))
       return "no plant names one";
     if (!shared) return fmt::format("method '{}' takes every plant as it is, 'instantiation' follows them", method);
-    return scene.periodic ? "in a periodic cell plants share nothing but exact copies" : "no plant that stands once has structures of their classes";
+    return scene.periodic ? "in a periodic cell plants share nothing but exact copies"
+                          : "no plant that stands once has structures of their classes";
   };
   if (!shared || shared->structures == 0)
     items.push_back({"policies", false, why_not()});
   else
-    items.push_back({"policies", true,
-                     fmt::format("{} stand for {} of {}, which {} opened one by one with {} own geometry",
-                                 counted(shared->pieces, "piece", "pieces"), counted(shared->structures, "structure", "structures"),
-                                 counted(shared->opened_alone, "plant", "plants"), shared->opened_alone == 1 ? "is" : "are",
-                                 shared->opened_alone == 1 ? "its" : "their")});
+    items.push_back(
+        {"policies", true,
+         fmt::format("{} stand for {} of {}, which {} opened one by one with {} own geometry", counted(shared->pieces, "piece", "pieces"),
+                     counted(shared->structures, "structure", "structures"), counted(shared->opened_alone, "plant", "plants"),
+                     shared->opened_alone == 1 ? "is" : "are", shared->opened_alone == 1 ? "its" : "their")});
 }
 
 /// Originals, their operators, and what copies hold.

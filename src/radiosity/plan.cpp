@@ -37,6 +37,7 @@ std::uint64_t whole(double x) {
 /// What few directions show of the links.
 struct Pilot {
   double fragments = 0, near_pairs = 0, near = 0, far = 0;
+  std::uint64_t parts = 0, bytes_of_enclosed = 0;  ///< elements and their enclosed parts; which part is whose
   bool clustered = false;
 };
 
@@ -101,11 +102,12 @@ class Planner {
     RadiositySettings settings = settings_;
     settings.density.fewest_hits *= static_cast<double>(directions) / settings.density.directions;  // as many in each direction
     settings.density.directions = directions;
-    settings.method = RadiosityMethod::flat;  // no search for enclosed parts
     const auto links = line_links(elements_, tree, {}, {}, settings, progress_);
     Pilot out;
     out.fragments = static_cast<double>(links.fragments);
     out.clustered = links.clustered;
+    out.parts = links.whole.size();
+    out.bytes_of_enclosed = (links.enclosed_part.size() + links.enclosed.size()) * word;
     for (const auto& half : links.half) {
       out.near += static_cast<double>(half.near.size());
       out.far += static_cast<double>(half.far.links.size());
@@ -132,13 +134,13 @@ class Planner {
     const double near = more.near * std::pow(times, exponent), far = more.far * times;
     plan_.links = whole(near + far);
 
-    const std::uint64_t sides = 2 * plan_.elements, slots = plan_.clusters * channels;
+    const std::uint64_t sides = 2 * more.parts, slots = plan_.clusters * channels;
     // of each half: starts of the rows of near links, lines and how many of them are open; far lines of sides and nodes; the sun's first
     // reflection
     const std::uint64_t half =
         4 * sides * word + (tree ? sides * channels + 3 * slots * word : 0) + (sun_ || lamps_ ? sides * columns_ * word : 0);
-    plan_.memory.emplace_back("links", 2 * half + whole(near * sizeof(std::uint32_t) + far * sizeof(std::uint32_t)) +
-                                           plan_.elements * word + (tree ? tree->bytes() : 0));
+    plan_.memory.emplace_back("links", 2 * half + whole(near * sizeof(std::uint32_t) + far * sizeof(std::uint32_t)) + more.parts * word +
+                                           more.bytes_of_enclosed + (tree ? tree->bytes() : 0));
     // 5 fields of the solver, 1 and a basis of the iteration; how far the basis grows, the optics alone do not tell
     constexpr std::uint64_t fields_of_iteration = 5 + 1 + 6;
     plan_.memory.emplace_back("fields",

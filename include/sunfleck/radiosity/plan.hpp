@@ -17,8 +17,8 @@ namespace sunfleck {
 ///   sky's light comes along the lines of scattered light.
 /// - Scattered light: how many lines meet two things, and how many of them join the same two, depends on what sees what. A pilot of 8
 ///   and one of 16 directions are traced; meetings grow in proportion to the directions, links as a power of them, whose exponent
-///   (below 1, as equal links merge) the two pilots give. Within 25 % on plants and canopies; enclosed parts are left out. Whether
-///   clusters pay is judged from the pilot; near the threshold the solve may choose otherwise.
+///   (below 1, as equal links merge) the two pilots give. Within 25 % on plants and canopies. Enclosed parts are those that the pilot
+///   finds. Whether clusters pay is judged from the pilot; near the threshold the solve may choose otherwise.
 struct RadiosityPlan {
   std::uint64_t elements = 0, cells = 0, clusters = 0;
   std::uint64_t sky_fragments = 0, sun_fragments = 0;  ///< meetings of a line with a surface, for direct light; sky: method direct alone
