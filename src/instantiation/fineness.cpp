@@ -16,7 +16,7 @@ InstantiationDensity beyond_fine() {
   d.fine.directions = 360;
   d.fine.lines_per_organ *= 1.4;
   d.elements_per_organ *= 1.5;
-  d.sun_samples = 12;
+  d.sun_samples = 16;
   d.sun_lines_per_organ *= 2.5;
   d.ground_rays *= 2;
   return d;

@@ -333,7 +333,10 @@ InstantiationDensity adapted(InstantiationDensity density, std::uint64_t facets)
     density.coarse.directions *= 2;
     density.coarse.lines_per_organ *= 1.5;
   } else {
-    density.sun_lines_per_organ *= 0.5;
+    density.fine.lines_per_organ *= 5.0 / 6.0;
+    density.fine.field_pixels = std::min(density.fine.field_pixels, 8u);
+    density.sun_samples = std::max(2u, density.sun_samples * 3 / 4);
+    density.sun_lines_per_organ *= 0.25;
   }
   return density;
 }

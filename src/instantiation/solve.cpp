@@ -79,11 +79,11 @@ std::uint64_t pass(const SceneLight& s, const std::vector<Batch>& batches, const
 InstantiationDensity instantiation_density(Quality quality) {
   switch (quality) {
     case Quality::draft:
-      return {{32, 1.5, 6, 1}, {64, 3.0, 6, 1}, 2.0, 2, 200.0, 32, 5e-3, 3e-3};
+      return {{32, 1.5, 6, 1}, {64, 3.0, 6, 1}, 2.0, 4, 400.0, 32, 5e-3, 3e-3};
     case Quality::standard:
-      return {{32, 1.5, 8, 1}, {160, 5.0, 8, 2}, 2.0, 6, 1500.0, 64, 2e-3, 1e-3};
+      return {{32, 1.5, 8, 1}, {160, 6.0, 12, 2}, 2.0, 8, 3000.0, 64, 2e-3, 1e-3};
     case Quality::fine:
-      return {{96, 4.0, 8, 2}, {256, 8.0, 8, 2}, 4.0, 8, 4000.0, 128, 3e-4, 5e-5};
+      return {{96, 4.0, 8, 2}, {256, 9.6, 12, 2}, 4.0, 12, 8000.0, 128, 3e-4, 5e-5};
   }
   return {};
 }

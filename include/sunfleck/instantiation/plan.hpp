@@ -44,7 +44,8 @@ InstantiationPlan plan_instantiation(const Scene& scene, const PlacedScene& plac
 /// of them (20,000) that solving them one by one would take longer than a moment.
 bool repeats(const Scene& scene);
 
-/// The densities that a scene of so many facets is solved with.
+/// The densities that a scene of so many facets is solved with: large ones take their time from the sun and from the fields, whose errors
+/// differ from copy to copy; small ones can afford a finer iteration.
 InstantiationDensity adapted(InstantiationDensity density, std::uint64_t facets);
 
 }  // namespace sunfleck
