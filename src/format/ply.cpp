@@ -71,7 +71,7 @@ bool number_type(std::string_view word, Number& type) {
 
 template <class T>
 double decoded(const char* from, bool swap) {
-  std::array<char, sizeof(T)> raw;
+  std::array<char, sizeof(T)> raw{};
   std::memcpy(raw.data(), from, sizeof(T));
   if (swap) std::reverse(raw.begin(), raw.end());
   return static_cast<double>(std::bit_cast<T>(raw));

@@ -43,7 +43,7 @@ std::vector<std::string_view> cells_of(std::string_view line) {
 
 /// Names of the columns from a header, or x, y, z, turn, scale where the first line holds numbers.
 std::vector<std::size_t> read_header(const std::vector<std::string_view>& cells, const std::string& where, bool& is_header) {
-  double ignored;
+  double ignored = 0;
   is_header = !to_number(cells.front(), ignored);
   std::vector<std::size_t> columns;
   if (!is_header) {

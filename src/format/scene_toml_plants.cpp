@@ -70,7 +70,7 @@ class OpticsMap {
   OpticsMap(const TomlValue& table, const Scene& scene) : table_(table) {
     const auto known = optics_names(scene);
     for (const auto& [key, value] : table.members()) {
-      const std::string name = value.text();
+      std::string name = value.text();
       const auto at = std::find(known.begin(), known.end(), name);
       if (at == known.end()) {
         const std::string nearest = nearest_name(name, known);

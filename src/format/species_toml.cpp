@@ -15,7 +15,7 @@ namespace {
 /// One key: where its value goes, and what it may be. Keys left out keep the default of species.hpp.
 template <class T>
 struct Key {
-  const char* name;
+  const char* name = "";
   std::variant<double T::*, std::int64_t T::*, std::string T::*, Outline T::*> member;
   double low = 0, high = 0;
   const char* unit = "";

@@ -182,7 +182,7 @@ std::string TomlValue::text() const {
 }
 
 std::string TomlValue::one_of(const std::vector<std::string>& names) const {
-  const std::string value = text();
+  std::string value = text();
   for (const auto& name : names)
     if (name == value) return value;
   const std::string nearest = nearest_name(value, names);
