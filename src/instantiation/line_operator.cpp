@@ -108,15 +108,13 @@ void LineOperator::trace(const Elements& elements, const std::vector<std::uint8_
   LinkRowsBuilder within(2 * elements.size(), seen_sides_);
   LinkRowsBuilder out(2 * elements.size(), field_lines.size());
   tbb::enumerable_thread_specific<Tracer> tracers;
-  // Links of a part of the directions are merged before the next are traced: all lines of a large plant take several times what their
-  // links do.
+  // Links of some directions are merged before more are traced: all lines of a large plant take several times what their links do.
   const double area = std::accumulate(elements.area.begin(), elements.area.end(), 0.0);
   const double hits_of_direction = 0.5 * area / line_area;
   const auto together = directions_together(hits_of_direction, visitor != nullptr);
   for (std::uint32_t first = 0; first < directions_; first += together) {
     const std::uint32_t end = std::min(directions_, first + together);
-    within.begin(end - first);
-    out.begin(end - first);
+    const std::size_t within_list = within.begin(end - first), out_list = out.begin(end - first);
     const auto trace_direction = [&](std::uint32_t d) {
       Tracer& tracer = tracers.local();
       LineBundle& bundle = tracer.bundle;
@@ -190,14 +188,14 @@ void LineOperator::trace(const Elements& elements, const std::vector<std::uint8_
         else
           ++tracer.lines[(up[k] & ~line_begins) >> 1];
       }
-      out.put(d - first, [&](auto&& call) {
+      out.put(out_list + d - first, [&](auto&& call) {
         for (const auto& [side, field] : leaving) call(side, field);
       });
       if (visitor) {
         visitor->lines(d % LineVisitor::streams, up, bundle.side);
         return;
       }
-      within.put(d - first, [&](auto&& call) {
+      within.put(within_list + d - first, [&](auto&& call) {
         each_meeting(up, [&](std::size_t k, std::uint32_t below, std::uint32_t above) {
           if (seen_ == Seen::cells) {
             call(below, bundle.side[k] ^ 1u);
@@ -221,8 +219,8 @@ void LineOperator::trace(const Elements& elements, const std::vector<std::uint8_
         if (!progress.cancelled()) trace_direction(d);
       });
     progress.check();
-    within.merge();
-    out.merge();
+    for (auto* rows : {&within, &out})
+      if (end == directions_ || rows->due()) rows->merge();
   }
   lines.assign(elements.size(), 0);
   std::vector<std::uint32_t> hits(interior.empty() ? 0 : surface.cells(), 0), inside_hits(hits);

@@ -84,6 +84,18 @@ LinkParts<Column>::LinkParts(std::size_t rows, unsigned shift) : shift_(shift) {
   }
 }
 
+bool merge_is_due(std::uint64_t waiting, std::uint64_t kept) {
+  constexpr std::uint64_t fewest = 2'000'000;
+  return waiting >= std::max(fewest, kept / 4);
+}
+
+template <class Column>
+bool LinkParts<Column>::due() const {
+  std::uint64_t waiting = 0;
+  for (const auto& list : lists_) waiting += list.row.size();
+  return merge_is_due(waiting, links_of(parts_));
+}
+
 template <class Column>
 void LinkParts<Column>::merge() {
   tbb::enumerable_thread_specific<MergeRoom<Column>> rooms;

@@ -52,13 +52,20 @@ struct LinkRows {
   }
 };
 
+/// Shall so many entries that wait be merged into so many links? Every merge copies all links: lists wait until they are a quarter of
+/// them, so that a link is copied a few times however many lists come, and what waits takes about a third of the room of what is kept.
+bool merge_is_due(std::uint64_t waiting, std::uint64_t kept);
+
 /// The parts of LinkRows in the making.
 template <class Column>
 class LinkParts {
  public:
   LinkParts(std::size_t rows, unsigned shift);
 
-  void begin(std::size_t lists) { lists_.resize(lists); }
+  std::size_t begin(std::size_t lists) {
+    lists_.resize(lists_.size() + lists);
+    return lists_.size() - lists;
+  }
 
   template <class Visit>
   void put(std::size_t list, const Visit& visit) {
@@ -76,6 +83,7 @@ class LinkParts {
     });
   }
 
+  bool due() const;
   void merge();
   std::vector<LinkPart<Column>> finish();
   std::size_t peak() const { return peak_; }
@@ -100,8 +108,8 @@ class LinkRowsBuilder {
  public:
   LinkRowsBuilder(std::size_t rows, std::size_t columns);
 
-  /// Room for so many lists until the next merge.
-  void begin(std::size_t lists) { is_narrow_ ? narrow_.begin(lists) : wide_.begin(lists); }
+  /// Room for so many lists more; returns the number of the first.
+  std::size_t begin(std::size_t lists) { return is_narrow_ ? narrow_.begin(lists) : wide_.begin(lists); }
 
   /// The entries of one list; lists in any number of threads. `visit(call)` calls call(row, column) for each, twice over the same.
   template <class Visit>
@@ -109,6 +117,8 @@ class LinkRowsBuilder {
     is_narrow_ ? narrow_.put(list, visit) : wide_.put(list, visit);
   }
 
+  /// merge_is_due() of the lists?
+  bool due() const { return is_narrow_ ? narrow_.due() : wide_.due(); }
   /// Takes the lists in and forgets them.
   void merge() { is_narrow_ ? narrow_.merge() : wide_.merge(); }
   /// The rows; nothing is left here.

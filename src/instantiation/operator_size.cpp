@@ -93,12 +93,18 @@ OperatorSize operator_size(const std::vector<const LineOperator*>& pilots, std::
   out.kept = static_cast<double>(pilot.bytes_kept()) + (times - 1) * (of_directions - points);
 
   const auto together = directions_together(static_cast<double>(pilot.fragments) / traced, followed);
-  double within = 0, leaving = 0;
-  for (std::uint32_t first = 0; first < directions; first += together) {
-    const std::uint32_t end = std::min(directions, first + together);
-    within = std::max(within, followed ? inside.bytes(0) : inside.merged_with(links_inside(end), end - first));
-    leaving = std::max(leaving, outside.merged_with(links_outside(end), end - first));
-  }
+  const auto most_held = [&](const RowsSize& rows, const auto& links_of) {
+    double most = 0, merged = 0;  // directions
+    for (std::uint32_t first = 0; first < directions; first += together) {
+      const std::uint32_t end = std::min(directions, first + together);
+      const double waiting = (end - merged) * rows.lines_of_direction;
+      if (end < directions && !merge_is_due(static_cast<std::uint64_t>(waiting), static_cast<std::uint64_t>(links_of(merged)))) continue;
+      most = std::max(most, rows.merged_with(links_of(end), end - merged));
+      merged = end;
+    }
+    return most;
+  };
+  const double within = followed ? inside.bytes(0) : most_held(inside, links_inside), leaving = most_held(outside, links_outside);
   out.built_with = static_cast<double>(pilot.traced_with()) + within + leaving;
   return out;
 }

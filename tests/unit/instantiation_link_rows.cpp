@@ -23,18 +23,18 @@ Entries random_entries(std::size_t number, std::uint32_t rows, std::uint32_t col
   return out;
 }
 
-/// In so many merges of so many lists each.
+/// In so many turns of so many lists each, every other of which ends in a merge.
 LinkRows made(const Entries& entries, std::size_t rows, std::size_t columns, std::size_t merges, std::size_t lists) {
   LinkRowsBuilder builder(rows, columns);
   const auto part = [&](std::size_t i, std::size_t n) { return entries.size() * i / n; };
   for (std::size_t m = 0; m < merges; ++m) {
-    builder.begin(lists);
+    const std::size_t first = builder.begin(lists);
     for (std::size_t l = 0; l < lists; ++l)
-      builder.put(l, [&](auto&& call) {
+      builder.put(first + l, [&](auto&& call) {
         for (auto k = part(m * lists + l, merges * lists); k < part(m * lists + l + 1, merges * lists); ++k)
           call(entries[k].first, entries[k].second);
       });
-    builder.merge();
+    if ((merges - m) % 2 == 1) builder.merge();
   }
   return builder.finish();
 }
@@ -68,4 +68,21 @@ TEST_CASE("link rows count every entry, however they are shared out to lists and
     CHECK((made(entries, rows, columns, 1, 7) == once));
     CHECK((made(entries, rows, columns, 5, 3) == once));
   }
+}
+
+TEST_CASE("link rows are merged seldom enough that each is copied a few times only") {
+  CHECK_FALSE(merge_is_due(1'999'999, 0));
+  CHECK(merge_is_due(2'000'000, 0));
+  CHECK_FALSE(merge_is_due(24'999'999, 100'000'000));
+  CHECK(merge_is_due(25'000'000, 100'000'000));
+  // lists of a million entries, as directions bring them, all of them links of their own
+  std::uint64_t kept = 0, waiting = 0, copied = 0;
+  while (kept < 1'000'000'000) {
+    waiting += 1'000'000;
+    if (!merge_is_due(waiting, kept)) continue;
+    kept += waiting;
+    copied += kept;
+    waiting = 0;
+  }
+  CHECK(copied < 6 * kept);
 }
