@@ -85,7 +85,7 @@ LinkParts<Column>::LinkParts(std::size_t rows, unsigned shift) : shift_(shift) {
 }
 
 bool merge_is_due(std::uint64_t waiting, std::uint64_t kept) {
-  constexpr std::uint64_t fewest = 2'000'000;
+  constexpr std::uint64_t fewest = 1'000'000;
   return waiting >= std::max(fewest, kept / 4);
 }
 

@@ -87,7 +87,7 @@ TEST_CASE("instantiation: what each part holds, to 5 %") {
   const auto report = solve_instantiation(grove(3), place(grove(3)), settings, sink, silent());
   const std::vector<std::pair<std::string, double>> expected{{"originals", 3498191.0}, {"sun", 135000.0},      {"rays", 1048008.0},
                                                              {"lanes", 11876736.0},    {"fields", 3112960.0},  {"rows", 648000.0},
-                                                             {"fine", 21719616.0},     {"at_once", 29351079.0}};
+                                                             {"fine", 24476576.0},     {"at_once", 29351079.0}};
   for (const auto& [name, bytes] : expected) {
     INFO(name << " " << value(report.memory, name));
     CHECK(static_cast<double>(value(report.memory, name)) == Approx(bytes).epsilon(0.05));

@@ -71,8 +71,8 @@ TEST_CASE("link rows count every entry, however they are shared out to lists and
 }
 
 TEST_CASE("link rows are merged seldom enough that each is copied a few times only") {
-  CHECK_FALSE(merge_is_due(1'999'999, 0));
-  CHECK(merge_is_due(2'000'000, 0));
+  CHECK_FALSE(merge_is_due(999'999, 0));
+  CHECK(merge_is_due(1'000'000, 0));
   CHECK_FALSE(merge_is_due(24'999'999, 100'000'000));
   CHECK(merge_is_due(25'000'000, 100'000'000));
   // lists of a million entries, as directions bring them, all of them links of their own
