@@ -138,6 +138,10 @@ TEST_CASE("AMAP scenes without a column for the scale, with several scenes, or b
     const auto message = [&](const std::string& name) { return files.message([&] { files.read(files.choice({name})); }); };
     CHECK(message("a.ops") == "a.ops:1: found z \"x\"; expected a finite number");
     CHECK(message("b.ops") == "b.ops:1: found no file tree.opf; expected a plant file");
+    const std::string endless = std::string(300, 'n') + ".opf";  // longer than a file system takes
+    Case too_long({{"a.ops", "1 1 " + endless + " 0 0 0 1 0 0 0\n"}});
+    CHECK(too_long.message([&] { too_long.read(too_long.choice({"a.ops"})); }) ==
+          "a.ops:1: found no file " + endless + "; expected a plant file");
     CHECK(message("c.ops") == "c.ops:1: found a terrain from 0 0 to 0 3; expected boundaries above the origin");
     CHECK(message("d.ops") == "d.ops: found no plant; expected lines \"sceneId objectId file x y z scale ...\"");
     CHECK(message("e.ops") ==
