@@ -1,12 +1,12 @@
 // `sunfleck plan` as its user meets it: what it predicts stands beside what a solve counts, and bad policies are refused as by a solve.
 #include <catch2/catch.hpp>
 
-#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <sunfleck/result/result_reader.hpp>
 
 #include "run_program.hpp"
+#include "young_poplars.hpp"
 
 namespace {
 
@@ -15,18 +15,7 @@ using sunfleck::Result;
 /// Three young poplars, no two alike, with a policy of their own.
 struct Poplars {
   explicit Poplars(const std::string& policy) {
-    std::string text =
-        "bands = [\"PAR\", \"NIR\"]\n[sun]\nelevation = 42.0\nazimuth = 225.0\nirradiance = { PAR = 390.0, NIR = 440.0 }\n"
-        "[sky]\nmodel = \"clear\"\nirradiance = { PAR = 75.0, NIR = 40.0 }\n"
-        "[optics.leaf]\nreflectance = { PAR = 0.1, NIR = 0.45 }\ntransmittance = { PAR = 0.05, NIR = 0.42 }\n"
-        "[optics.bark]\nreflectance = { PAR = 0.2, NIR = 0.4 }\n";
-    for (int i = 1; i <= 3; ++i)
-      text +=
-          fmt::format("[[plant]]\nname = \"poplar_{0}\"\nfile = \"" SUNFLECK_SOURCE_DIR
-                      "/plants/poplar.toml\"\nage = 3\nseed = {0}\npolicy = \"p.toml\"\noptics = {{ leaf = \"leaf\", bark = \"bark\" }}\n"
-                      "place = [ {{ position = [{1}, 0, 0] }} ]\n",
-                      i, 2 * i);
-    path = folder.file("three.toml", text);
+    path = folder.file("three.toml", young_poplars::scene_text(3, 2, "policy = \"p.toml\"\n"));
     folder.file("p.toml", policy);
   }
   ProgramRun plan(const std::string& method = "instantiation") const {

@@ -3,11 +3,11 @@
 
 #include <cmath>
 
-#include <sunfleck/format/species_toml.hpp>
 #include <sunfleck/instantiation/solve.hpp>
 #include <sunfleck/policy/policy_toml.hpp>
 
 #include "radiosity_runs.hpp"
+#include "young_poplars.hpp"
 
 using namespace sunfleck;
 using namespace radiosity_runs;
@@ -17,17 +17,7 @@ namespace {
 /// Young poplars, no two alike, side by side.
 Scene poplars(std::uint32_t count) {
   auto scene = scene_with({"PAR", "NIR"}, {uniform_optics("leaf", {0.09, 0.45}, {0.05, 0.40}), uniform_optics("bark", {0.2, 0.4}, {0, 0})});
-  const std::string root = SUNFLECK_SOURCE_DIR;
-  for (std::uint32_t k = 0; k < count; ++k) {
-    PlantEntry entry;
-    entry.name = "poplar_" + std::to_string(k);
-    entry.plant = std::make_shared<const Plant>(read_species_plant(root + "/plants/poplar.toml", 3.0, k + 1));
-    for (const auto& shape : entry.plant->shapes)
-      entry.shape_optics.push_back(entry.plant->types[entry.plant->structures[shape.structure].type] == "leaf" ? 0 : 1);
-    entry.policy_file = root + "/policies/poplar.toml";
-    entry.placements = {{Affine::translate({2.0 * k, 0, 0}) * Affine::turn(k)}};
-    scene.plants.push_back(std::move(entry));
-  }
+  scene.plants = young_poplars::entries(count, SUNFLECK_SOURCE_DIR "/policies/poplar.toml");
   sky(scene, SkyModel::standard_overcast, 100);
   scene.states[0].sun = Sun{glm::normalize(Vec3{0.5, 0.1, 0.8}), {400, 400}, 0.53};
   return scene;

@@ -1,14 +1,13 @@
 // Memory and work of the instantiation, counted by the program, as copies are added (against its plan: plan_against_solve.cpp).
 #include <catch2/catch.hpp>
 
-#include <fmt/format.h>
-
 #include <sunfleck/instantiation/plan.hpp>
 #include <sunfleck/result/result_reader.hpp>
 
 #include "radiosity_runs.hpp"
 #include "run_program.hpp"
 #include "sanitized.hpp"
+#include "young_poplars.hpp"
 
 using namespace sunfleck;
 using namespace radiosity_runs;
@@ -100,17 +99,7 @@ TEST_CASE("instantiation: the process's own peak is within 1.3 of what is counte
     return;
   }
   const TemporaryFolder folder;
-  std::string text =
-      "bands = [\"PAR\", \"NIR\"]\n[sun]\nelevation = 42.0\nazimuth = 225.0\nirradiance = { PAR = 390.0, NIR = 440.0 }\n"
-      "[sky]\nmodel = \"clear\"\nirradiance = { PAR = 75.0, NIR = 40.0 }\n"
-      "[optics.leaf]\nreflectance = { PAR = 0.1, NIR = 0.45 }\ntransmittance = { PAR = 0.05, NIR = 0.42 }\n"
-      "[optics.bark]\nreflectance = { PAR = 0.2, NIR = 0.4 }\n";
-  for (int i = 1; i <= 3; ++i)
-    text += fmt::format("[[plant]]\nname = \"poplar_{0}\"\nfile = \"" SUNFLECK_SOURCE_DIR
-                        "/plants/poplar.toml\"\nage = 6\nseed = {0}\noptics = {{ leaf = \"leaf\", bark = \"bark\" }}\n"
-                        "place = [ {{ position = [{1}, 0, 0] }} ]\n",
-                        i, 4 * i);
-  folder.file("three.toml", text);
+  folder.file("three.toml", young_poplars::scene_text(6, 4));
   const auto run = run_sunfleck({"solve", folder.path("three.toml"), "-o", folder.path("r.h5"), "--method", "instantiation", "--quality",
                                  "draft", "--no-certificate", "--threads", "2"});
   INFO(run.err);

@@ -3,11 +3,11 @@
 
 #include <algorithm>
 
-#include <sunfleck/format/species_toml.hpp>
 #include <sunfleck/instantiation/plan.hpp>
 #include <sunfleck/policy/policy_toml.hpp>
 
 #include "radiosity_runs.hpp"
+#include "young_poplars.hpp"
 
 using namespace sunfleck;
 using namespace radiosity_runs;
@@ -93,17 +93,7 @@ Scene nested() {
 /// Poplars of three years, no two alike.
 Scene poplars(std::uint32_t count, const std::string& policy) {
   auto scene = light_over({uniform_optics("leaf", {0.09, 0.45}, {0.05, 0.40}), uniform_optics("bark", {0.2, 0.4}, {0, 0})});
-  const std::string root = SUNFLECK_SOURCE_DIR;
-  for (std::uint32_t k = 0; k < count; ++k) {
-    PlantEntry entry;
-    entry.name = "poplar_" + std::to_string(k);
-    entry.plant = std::make_shared<const Plant>(read_species_plant(root + "/plants/poplar.toml", 3.0, k + 1));
-    for (const auto& shape : entry.plant->shapes)
-      entry.shape_optics.push_back(entry.plant->types[entry.plant->structures[shape.structure].type] == "leaf" ? 0 : 1);
-    if (!policy.empty()) entry.policy_file = root + "/policies/" + policy;
-    entry.placements = {{Affine::translate({2.0 * k, 0, 0}) * Affine::turn(k)}};
-    scene.plants.push_back(std::move(entry));
-  }
+  scene.plants = young_poplars::entries(count, policy.empty() ? policy : SUNFLECK_SOURCE_DIR "/policies/" + policy);
   return scene;
 }
 

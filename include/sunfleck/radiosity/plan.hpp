@@ -15,10 +15,11 @@ namespace sunfleck {
 /// - Direct light: a surface of one-sided area A meets A |cos| / a lines of a direction, where a is the area that a line stands for, so
 ///   A D / (2 a) lines of D directions spread evenly over the hemisphere. Right within the rounding of grids. But for method direct the
 ///   sky's light comes along the lines of scattered light.
-/// - Scattered light: how many lines meet two things, and how many of them join the same two, depends on what sees what. A pilot of 8
-///   and one of 16 directions are traced; meetings grow in proportion to the directions, links as a power of them, whose exponent
-///   (below 1, as equal links merge) the two pilots give. Within 25 % on plants and canopies. Enclosed parts are those that the pilot
-///   finds. Whether clusters pay is judged from the pilot; near the threshold the solve may choose otherwise.
+/// - Scattered light: how many lines meet two things, and how many of them join the same two, depends on what sees what. Pilots
+///   of a tenth (in small scenes a quarter) of the directions, and of a quarter of those, are traced; meetings grow in proportion to the
+///   directions, links as a power of them, whose exponent (below 1, as equal links merge) the two pilots give. Within 25 % on plants and
+///   canopies. Enclosed parts are those that the pilot finds. Whether clusters pay is judged from the pilot; near the threshold the solve
+///   may choose otherwise.
 struct RadiosityPlan {
   std::uint64_t elements = 0, cells = 0, clusters = 0;
   std::uint64_t sky_fragments = 0, sun_fragments = 0;  ///< meetings of a line with a surface, for direct light; sky: method direct alone
