@@ -14,4 +14,10 @@ void release_freed_memory() {
 #endif
 }
 
+void map_large_arrays() {
+#ifdef __GLIBC__
+  mallopt(M_MMAP_THRESHOLD, 4 << 20);
+#endif
+}
+
 }  // namespace sunfleck
