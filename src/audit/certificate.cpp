@@ -10,15 +10,15 @@
 #include <sunfleck/reference/path_sampler.hpp>
 #include <sunfleck/reference/path_tracer.hpp>
 
+#include "audit/error_interval.hpp"
 #include "audit/organ_choice.hpp"
-#include "error_interval.hpp"
+#include "audit/solved_light.hpp"
 
 namespace sunfleck {
 
 namespace {
 
 constexpr std::uint32_t sun_points = 8;  // a shadow ray is a tenth of a sample's cost, and direct sun most of its variance
-constexpr double least_absorbed = 1e-6;  // of the incident light; below it irradiance is compared
 
 /// Rays become dearer as the tree outgrows the caches: about as the root of the number of facets.
 std::uint64_t rays_for(std::size_t facets) {
@@ -60,14 +60,6 @@ TracedLight measure(const PathSampler& sampler, const SampleTarget& target, std:
   return out;
 }
 
-/// Solved light per area of an organ: absorbed, or irradiance front + back.
-double solved_per_area(const OrganTotals& solved, std::size_t s, std::size_t k, std::size_t b, bool irradiance) {
-  if (!(solved.area[k] > 0.0)) return 0.0;
-  if (!irradiance) return solved.absorbed_power(s, k, b) / solved.area[k];
-  const double* sides = &solved.irradiance[((s * solved.organs.size() + k) * 2) * solved.bands + b];
-  return (sides[0] + sides[solved.bands]) / solved.area[k];
-}
-
 /// `place` [k] says where the chosen ones are among those of `solved`.
 void estimate_band(std::size_t b, const OrganTotals& solved, const std::vector<ChosenOrgan>& chosen, const std::vector<std::size_t>& place,
                    const std::vector<TracedLight>& measured, bool irradiance, Certificate& out) {
@@ -92,10 +84,7 @@ void estimate_band(std::size_t b, const OrganTotals& solved, const std::vector<C
     errors.push_back(error);
   }
   const ErrorEstimate estimate = estimate_error(errors);
-  double light = 0.0;
-  for (std::size_t s = 0; s < solved.states; ++s)
-    light += (irradiance ? solved.plant_irradiance : solved.plant_absorbed)[s * solved.bands + b] / states;
-  const double mean = solved.plant_area > 0.0 ? light / solved.plant_area - estimate.bias : 0.0;
+  const double mean = solved.plant_area > 0.0 ? mean_light(solved, b, irradiance) - estimate.bias : 0.0;
   const auto relative = [mean](double value) { return mean > 0.0 ? value / mean : 0.0; };  // no light at all: no error either
   out.rmse.push_back(relative(estimate.rmse));
   out.rmse_low.push_back(relative(estimate.low));
@@ -157,13 +146,8 @@ Certificate judge(const TracedOrgans& traced, const OrganTotals& solved, const s
   Certificate out;
   out.seed = traced.seed;
   out.rays = traced.rays;
-  std::vector<std::size_t> place;  // among those whose light was kept
-  for (const auto& c : chosen) {
-    out.organs.push_back(c.organ);
-    const auto at = std::lower_bound(solved.organs.begin(), solved.organs.end(), c.organ);
-    if (at == solved.organs.end() || *at != c.organ) throw Error("certificate: the solved light of other organs than those traced");
-    place.push_back(static_cast<std::size_t>(at - solved.organs.begin()));
-  }
+  for (const auto& c : chosen) out.organs.push_back(c.organ);
+  const auto place = places_of(chosen, solved);
   for (std::size_t s = 0; s < solved.states; ++s)
     for (std::size_t k = 0; k < chosen.size(); ++k)
       for (std::size_t b = 0; b < solved.bands; ++b) {
@@ -172,11 +156,7 @@ Certificate judge(const TracedOrgans& traced, const OrganTotals& solved, const s
         out.reference.push_back(static_cast<float>(area * measured[k].absorbed[s * solved.bands + b]));
         out.standard_error.push_back(static_cast<float>(area * std::sqrt(measured[k].absorbed_variance[s * solved.bands + b])));
       }
-  for (std::size_t b = 0; b < solved.bands; ++b) {
-    double leaves = 0.0, incident = 0.0;
-    for (const auto& state : balance) leaves += state[b].leaves, incident += state[b].incident;
-    estimate_band(b, solved, chosen, place, measured, incident > 0.0 && leaves < least_absorbed * incident, out);
-  }
+  for (std::size_t b = 0; b < solved.bands; ++b) estimate_band(b, solved, chosen, place, measured, compares_irradiance(balance, b), out);
   return out;
 }
 

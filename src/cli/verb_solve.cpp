@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <set>
 #include <string>
 
 #include <fmt/format.h>
@@ -33,6 +34,7 @@ namespace sunfleck {
 namespace {
 
 constexpr int not_converged = 3;  // exit code
+constexpr std::uint32_t compared_organs = 4000;
 
 void say_what_was_read(const Scene& scene, const PlacedScene& placed, double seconds, Progress& progress) {
   for (const auto& note : scene.notes) progress.line("note: " + note);
@@ -162,12 +164,13 @@ std::string percent_of_bands(const Scene& scene, const std::vector<double>& goal
   return text;
 }
 
-/// Judges a solve by its certificate; sets the fineness of the next one and returns true where one is needed.
-bool refine_further(const Scene& scene, const SolveReport& report, Certificate& certificate, Refinement& refinement, MethodChoice& choice,
-                    Progress& progress) {
+/// Judges a solve by its certificate and by its distances to earlier ones; sets the fineness of the next one and returns true where one is
+/// needed.
+bool refine_further(const Scene& scene, const SolveReport& report, Certificate& certificate, const std::vector<SolveDifference>& to_earlier,
+                    Refinement& refinement, MethodChoice& choice, Progress& progress) {
   const auto& goal = refinement.goal();
   const double fineness = *choice.fineness;
-  refinement.add(fineness, certificate);
+  refinement.add(fineness, certificate, to_earlier);
   certificate.wanted = goal;
   const auto expected = [&](double at) {
     return percent_of_bands(scene, goal, [&](std::size_t b) { return refinement.expected(b, at, 0.0); });
@@ -191,6 +194,14 @@ bool refine_further(const Scene& scene, const SolveReport& report, Certificate& 
                             expected(*next)));
   choice.fineness = next;
   return true;
+}
+
+/// Rows of /organs of both, rising.
+std::vector<std::uint64_t> rows_of(const std::vector<ChosenOrgan>& a, const std::vector<ChosenOrgan>& b) {
+  std::set<std::uint64_t> rows;
+  for (const auto* chosen : {&a, &b})
+    for (const auto& c : *chosen) rows.insert(c.organ);
+  return {rows.begin(), rows.end()};
 }
 
 void say_not_reached(const Scene& scene, const Refinement& refinement, const Certificate& certificate, Progress& progress) {
@@ -248,19 +259,24 @@ int verb_solve(const SolveOptions& options, Progress& progress) {
   checking.threads = options.threads;
   if (options.certificate_organs) checking.organs = *options.certificate_organs;
   if (options.certificate_rays) checking.rays = *options.certificate_rays;
-  std::vector<ChosenOrgan> chosen;
+  std::vector<ChosenOrgan> chosen, compared;  // to trace; to compare solves by
   if (!sums && wants_certificate(choice, scene, placed, options)) chosen = choose_organs(rows, checking);
+  if (refinement && !chosen.empty()) {
+    CertificateSettings more = checking;
+    more.organs = std::max(more.organs, compared_organs);
+    compared = choose_organs(rows, more);
+  }
 
   std::optional<ResultWriter> writer;
   SolveReport report;
   std::optional<TracedOrgans> traced;  // once: all solves are judged by the same
   std::optional<Certificate> certificate;
+  std::vector<OrganTotals> solved;  // where an error is wanted: of all solves
   std::optional<Image> image;
   double earlier_seconds = 0.0, certificate_seconds = 0.0;
   for (bool again = true; again;) {
     writer.emplace(options.result, scene, sums ? layout : placed, scene.output, software_version(), choice.method);
-    std::vector<std::uint64_t> organs;
-    for (const auto& c : chosen) organs.push_back(c.organ);
+    std::vector<std::uint64_t> organs = rows_of(chosen, compared);
     if (!organs.empty()) writer->keep_totals(std::move(organs));
     std::optional<StructureSums> structures;
     if (sums) structures.emplace(scene, placed, layout, *writer);
@@ -268,7 +284,8 @@ int verb_solve(const SolveOptions& options, Progress& progress) {
     std::optional<PictureSink> picture;
     if (options.picture) picture.emplace(scene, placed, 0, PictureSettings{}, &rows_sink, progress);
     IrradianceSink& sink = picture ? *picture : rows_sink;
-    report = run_method(choice, scene, placed, facets, options, seed, sink, progress);
+    // other lines for every solve, so that their errors have little in common
+    report = run_method(choice, scene, placed, facets, options, seed + solved.size(), sink, progress);
     count_program(bytes_at_start, report);
     if (structures) structures->append(report.structures);
     again = false;
@@ -286,7 +303,12 @@ int verb_solve(const SolveOptions& options, Progress& progress) {
     }
     certificate = judge(*traced, writer->totals(), report.balance);
     certificate_seconds += watch.seconds();
-    again = refinement && refine_further(scene, report, *certificate, *refinement, choice, progress);
+    if (refinement) {
+      std::vector<SolveDifference> to_earlier;
+      for (const auto& earlier : solved) to_earlier.push_back(solve_difference(compared, earlier, writer->totals(), report.balance));
+      solved.push_back(writer->totals());
+      again = refine_further(scene, report, *certificate, to_earlier, *refinement, choice, progress);
+    }
     if (again)
       for (const auto& [phase, spent] : report.timings) earlier_seconds += spent;
   }

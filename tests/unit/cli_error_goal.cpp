@@ -24,6 +24,16 @@ Certificate certificate(std::vector<double> rmse, double uncertainty) {
   return c;
 }
 
+/// Two solves whose errors have nothing in common, compared by some organs.
+SolveDifference apart(const std::vector<double>& a, const std::vector<double>& b, double uncertainty) {
+  SolveDifference d;
+  for (std::size_t k = 0; k < a.size(); ++k) {
+    d.square.push_back(a[k] * a[k] + b[k] * b[k]);
+    d.square_standard_error.push_back(uncertainty * d.square.back());
+  }
+  return d;
+}
+
 }  // namespace
 
 TEST_CASE("a wanted error is a fraction or per cent, of all bands or of some", "[cli][error]") {
@@ -75,16 +85,16 @@ TEST_CASE("densities at the fineness of a quality are the quality's, and rise be
 
 TEST_CASE("a solve that is good enough by a margin is the last", "[cli][error]") {
   Refinement r({0.05, 0.05}, "clustering");
-  r.add(r.first(), certificate({0.02, 0.04}, 0.3));
+  r.add(r.first(), certificate({0.02, 0.04}, 0.3), {});
   CHECK(r.reached());
   Refinement near({0.05, 0.05}, "clustering");
-  near.add(near.first(), certificate({0.02, 0.048}, 0.3));  // below, but not by a standard error
+  near.add(near.first(), certificate({0.02, 0.048}, 0.3), {});  // below, but not by a standard error
   CHECK_FALSE(near.reached());
 }
 
 TEST_CASE("the next solve is as fine as the worst band needs, and no finer", "[cli][error]") {
   Refinement r({0.01, 0.02}, "clustering");
-  r.add(r.first(), certificate({0.02, 0.05}, 0.2));
+  r.add(r.first(), certificate({0.02, 0.05}, 0.2), {});
   CHECK_FALSE(r.reached());
   const double next = r.next(finest_fineness).value();
   CHECK(r.expected(1, next, Refinement::caution) <= 0.02);
@@ -92,28 +102,55 @@ TEST_CASE("the next solve is as fine as the worst band needs, and no finer", "[c
   CHECK(r.expected(0, next, Refinement::caution) <= 0.01);
   // of a band of which nothing is asked nothing is asked
   Refinement par({0.01, 0.0}, "clustering");
-  par.add(par.first(), certificate({0.02, 0.05}, 0.2));
+  par.add(par.first(), certificate({0.02, 0.05}, 0.2), {});
   CHECK(par.next(finest_fineness).value() < next);
 }
 
 TEST_CASE("an error that stays higher than expected takes another solve; the third is the last", "[cli][error]") {
   Refinement r({0.03}, "flat");
-  r.add(r.first(), certificate({0.06}, 0.2));
+  r.add(r.first(), certificate({0.06}, 0.2), {});
   const double second = r.next(finest_fineness).value();
   REQUIRE(second < finest_fineness);
-  r.add(second, certificate({0.04}, 0.1));
+  r.add(second, certificate({0.04}, 0.1), {apart({0.06}, {0.04}, 0.1)});
   CHECK_FALSE(r.reached());
   const double third = r.next(finest_fineness).value();
   CHECK(third > second);
-  r.add(third, certificate({0.035}, 0.02));
+  r.add(third, certificate({0.035}, 0.02), {apart({0.06}, {0.035}, 0.1), apart({0.04}, {0.035}, 0.1)});
   CHECK_FALSE(r.reached());
   CHECK_FALSE(r.next(finest_fineness).has_value());
 }
 
 TEST_CASE("where nothing finer is left, there is no next solve", "[cli][error]") {
   Refinement r({0.0001}, "clustering");
-  r.add(r.first(), certificate({0.05}, 0.2));
+  r.add(r.first(), certificate({0.05}, 0.2), {});
   CHECK(r.next(1.3).value() == 1.3);
-  r.add(1.3, certificate({0.02}, 0.2));
+  r.add(1.3, certificate({0.02}, 0.2), {apart({0.05}, {0.02}, 0.1)});
   CHECK_FALSE(r.next(1.3).has_value());
+}
+
+TEST_CASE("two solves tell an error that is below the noise of a certificate", "[cli][error]") {
+  constexpr double coarse = 0.03;
+  const double fine = coarse * error_at("clustering", 1.0);
+  const auto found = [&](std::vector<SolveDifference> differences, double certified, double noise) {
+    Refinement r({0.02}, "clustering");
+    r.add(r.first(), certificate({coarse}, 0.2), {});
+    Certificate second = certificate({certified}, 0.0);
+    second.square_standard_error = {noise * noise};
+    r.add(1.0, second, differences);
+    return r;
+  };
+  // a certificate whose noise alone is twice the goal, and finds more than the goal
+  const auto known = found({apart({coarse}, {fine}, 0.1)}, 0.022, 0.04);
+  CHECK(known.reached());
+  CHECK(known.expected(0, 1.0, 0.0) == Approx(fine).epsilon(0.15));  // errors that have something in common are allowed for
+  // solves that are further apart than the first one's error explains
+  CHECK_FALSE(found({apart({0.1}, {0.03}, 0.1)}, 0.01, 0.04).reached());
+  // what both have wrong alike only the certificate shows
+  CHECK_FALSE(found({apart({0.005}, {0.002}, 0.1)}, 0.025, 0.01).reached());
+}
+
+TEST_CASE("a solve has to be compared with every one before it", "[cli][error]") {
+  Refinement r({0.01}, "clustering");
+  r.add(r.first(), certificate({0.05}, 0.2), {});
+  CHECK_THROWS_WITH(r.add(1.0, certificate({0.02}, 0.2), {}), "refinement: a solve is compared with every one before it");
 }
