@@ -2,12 +2,10 @@
 
 #include <algorithm>
 #include <optional>
-#include <set>
 #include <string>
 
 #include <fmt/format.h>
 #include <tbb/global_control.h>
-#include <unistd.h>
 
 #include <sunfleck/audit/certificate.hpp>
 #include <sunfleck/core/error.hpp>
@@ -23,9 +21,9 @@
 #include <sunfleck/scene/facets.hpp>
 #include <sunfleck/view/picture_sink.hpp>
 
-#include "cli/error_goal.hpp"
 #include "cli/method_choice.hpp"
 #include "cli/output_path.hpp"
+#include "cli/refine.hpp"
 #include "cli/solve_table.hpp"
 #include "cli/text_units.hpp"
 
@@ -34,7 +32,6 @@ namespace sunfleck {
 namespace {
 
 constexpr int not_converged = 3;  // exit code
-constexpr std::uint32_t compared_organs = 4000;
 
 void say_what_was_read(const Scene& scene, const PlacedScene& placed, double seconds, Progress& progress) {
   for (const auto& note : scene.notes) progress.line("note: " + note);
@@ -138,81 +135,6 @@ void check_goal(const MethodChoice& choice) {
                                  choice.method == "direct" ? "'direct' leaves scattered light out" : "'reference' takes --samples"));
 }
 
-/// The largest fineness whose memory, which grows about as the samples do, stays below three fifths of the machine's.
-double finest_in_memory(const MethodChoice& choice, const SolveReport& report) {
-  const auto samples = [&](double fineness) {
-    if (choice.method == "instantiation") {
-      const auto d = instantiation_density_at(fineness);
-      return d.coarse.directions * d.coarse.lines_per_organ + d.fine.directions * d.fine.lines_per_organ;
-    }
-    const auto d = density_at(fineness);
-    return d.directions * d.lines_per_element * d.elements_per_organ;
-  };
-  const double room = 0.6 * static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
-  double held = 0;
-  for (const auto& [name, bytes] : report.memory)
-    if (name != "at_once") held += static_cast<double>(bytes);
-  double fineness = finest_fineness;
-  while (fineness > *choice.fineness && held * samples(fineness) / samples(*choice.fineness) > room) fineness -= 0.05;
-  return std::max(fineness, *choice.fineness);
-}
-
-std::string percent_of_bands(const Scene& scene, const std::vector<double>& goal, const auto& value) {
-  std::string text;
-  for (std::size_t b = 0; b < goal.size(); ++b)
-    if (goal[b] > 0) text += fmt::format("{}{} {:.2f} %", text.empty() ? "" : ", ", scene.bands[b], 100.0 * value(b));
-  return text;
-}
-
-/// Judges a solve by its certificate and by its distances to earlier ones; sets the fineness of the next one and returns true where one is
-/// needed.
-bool refine_further(const Scene& scene, const SolveReport& report, Certificate& certificate, const std::vector<SolveDifference>& to_earlier,
-                    Refinement& refinement, MethodChoice& choice, Progress& progress) {
-  const auto& goal = refinement.goal();
-  const double fineness = *choice.fineness;
-  refinement.add(fineness, certificate, to_earlier);
-  certificate.wanted = goal;
-  const auto expected = [&](double at) {
-    return percent_of_bands(scene, goal, [&](std::size_t b) { return refinement.expected(b, at, 0.0); });
-  };
-  const std::string wanted = percent_of_bands(scene, goal, [&](std::size_t b) { return goal[b]; });
-  if (report.status != SolveStatus::converged || refinement.reached()) {
-    progress.line(fmt::format("error of about {} at fineness {:.2f}; wanted {}", expected(fineness), fineness, wanted));
-    return false;
-  }
-  const double limit = finest_in_memory(choice, report);
-  const auto next = refinement.next(limit);
-  if (!next) {
-    progress.line(fmt::format("error of about {} at fineness {:.2f}; wanted {}, not reached", expected(fineness), fineness, wanted));
-    return false;
-  }
-  progress.line(fmt::format("error of about {} at fineness {:.2f}; wanted {}: solving again at fineness {:.2f}{}, where {} is expected",
-                            expected(fineness), fineness, wanted, *next,
-                            *next < limit - 1e-9      ? ""
-                            : limit < finest_fineness ? ", the finest that memory allows"
-                                                      : ", the finest there is",
-                            expected(*next)));
-  choice.fineness = next;
-  return true;
-}
-
-/// Rows of /organs of both, rising.
-std::vector<std::uint64_t> rows_of(const std::vector<ChosenOrgan>& a, const std::vector<ChosenOrgan>& b) {
-  std::set<std::uint64_t> rows;
-  for (const auto* chosen : {&a, &b})
-    for (const auto& c : *chosen) rows.insert(c.organ);
-  return {rows.begin(), rows.end()};
-}
-
-void say_not_reached(const Scene& scene, const Refinement& refinement, const Certificate& certificate, Progress& progress) {
-  const auto& goal = refinement.goal();
-  progress.line(fmt::format(
-      "sunfleck: the wanted error, {}, was not reached: the certificate finds {}. The result is written with status 'not_converged'. For "
-      "less: another method, or --method reference with as many --samples as it takes",
-      percent_of_bands(scene, goal, [&](std::size_t b) { return goal[b]; }),
-      percent_of_bands(scene, goal, [&](std::size_t b) { return certificate.rmse[b]; })));
-}
-
 }  // namespace
 
 int verb_solve(const SolveOptions& options, Progress& progress) {
@@ -261,11 +183,7 @@ int verb_solve(const SolveOptions& options, Progress& progress) {
   if (options.certificate_rays) checking.rays = *options.certificate_rays;
   std::vector<ChosenOrgan> chosen, compared;  // to trace; to compare solves by
   if (!sums && wants_certificate(choice, scene, placed, options)) chosen = choose_organs(rows, checking);
-  if (refinement && !chosen.empty()) {
-    CertificateSettings more = checking;
-    more.organs = std::max(more.organs, compared_organs);
-    compared = choose_organs(rows, more);
-  }
+  if (refinement && !chosen.empty()) compared = organs_to_compare(rows, checking);
 
   std::optional<ResultWriter> writer;
   SolveReport report;
@@ -331,7 +249,7 @@ int verb_solve(const SolveOptions& options, Progress& progress) {
   }
   if (report.status == SolveStatus::converged) return 0;
   if (solve_converged)
-    say_not_reached(scene, *refinement, *certificate, progress);
+    say_not_reached(scene, *choice.fineness, *refinement, *certificate, progress);
   else
     say_not_converged(scene, report, progress);
   return not_converged;

@@ -66,7 +66,7 @@ TEST_CASE("an error that cannot be reached is said so, and the best result is ke
   INFO(out.run.err);
   CHECK(out.run.exit_code == 3);
   CHECK(contains(out.run.err, "the finest there is"));
-  CHECK(contains(out.run.err, "sunfleck: the wanted error, PAR 0.01 %, NIR 0.01 %, was not reached: the certificate finds PAR "));
+  CHECK(contains(out.run.err, "sunfleck: the wanted error, PAR 0.01 %, NIR 0.01 %, was not reached: about PAR "));
   CHECK(contains(out.run.err, "wrote " + folder.path("r.h5")));
   CHECK(out.certificate.wanted == std::vector<double>{1e-4, 1e-4});
   CHECK(Result(folder.path("r.h5")).header().status == "not_converged");

@@ -40,7 +40,7 @@ TEST_CASE("solves that differ by a tenth of the mean everywhere are a tenth apar
   const auto coarse = solve([](auto, auto k, auto b) { return (b == 0 ? 10.0 : 50.0) * (k == 1 ? 1.1 : 0.9); });
   const auto d = solve_difference(all, coarse, fine, balance());
   CHECK(d.square[0] == Approx(0.01));
-  CHECK(d.square[1] == Approx(0.01));  // by irradiance, where nothing is absorbed
+  CHECK(d.square[1] == Approx(0.01));                           // by irradiance, where nothing is absorbed
   CHECK(d.square_standard_error == std::vector<double>{0, 0});  // all organs are compared
 }
 

@@ -16,8 +16,8 @@ struct SolveDifference {
   std::vector<double> square_standard_error;  ///< [b] from the choice of organs [-]
 };
 
-/// `compared`: organs as choose_organs() draws them, of which `coarse` and `fine` hold all; `balance` of the finer solve. No rays, no noise:
-/// what it leaves open is which organs were drawn, and how far the two errors go together (cli/error_goal.hpp).
+/// `compared`: organs as choose_organs() draws them, of which `coarse` and `fine` hold all; `balance` of the finer solve. No rays, no
+/// noise: what it leaves open is which organs were drawn, and how far the two errors go together (cli/error_goal.hpp).
 SolveDifference solve_difference(const std::vector<ChosenOrgan>& compared, const OrganTotals& coarse, const OrganTotals& fine,
                                  const std::vector<std::vector<Balance>>& balance);
 

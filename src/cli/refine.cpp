@@ -1,0 +1,100 @@
+#include "cli/refine.hpp"
+
+#include <algorithm>
+#include <set>
+#include <string>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <sunfleck/instantiation/fineness.hpp>
+#include <sunfleck/radiosity/fineness.hpp>
+
+namespace sunfleck {
+
+namespace {
+
+constexpr std::uint32_t compared_organs = 4000;
+
+/// The largest fineness whose memory, which grows about as the samples do, stays below three fifths of the machine's.
+double finest_in_memory(const MethodChoice& choice, const SolveReport& report) {
+  const auto samples = [&](double fineness) {
+    if (choice.method == "instantiation") {
+      const auto d = instantiation_density_at(fineness);
+      return d.coarse.directions * d.coarse.lines_per_organ + d.fine.directions * d.fine.lines_per_organ;
+    }
+    const auto d = density_at(fineness);
+    return d.directions * d.lines_per_element * d.elements_per_organ;
+  };
+  const double room = 0.6 * static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+  double held = 0;
+  for (const auto& [name, bytes] : report.memory)
+    if (name != "at_once") held += static_cast<double>(bytes);
+  double fineness = finest_fineness;
+  while (fineness > *choice.fineness && held * samples(fineness) / samples(*choice.fineness) > room) fineness -= 0.05;
+  return std::max(fineness, *choice.fineness);
+}
+
+std::string percent_of_bands(const Scene& scene, const std::vector<double>& goal, const auto& value) {
+  std::string text;
+  for (std::size_t b = 0; b < goal.size(); ++b)
+    if (goal[b] > 0) text += fmt::format("{}{} {:.2f} %", text.empty() ? "" : ", ", scene.bands[b], 100.0 * value(b));
+  return text;
+}
+
+}  // namespace
+
+std::vector<ChosenOrgan> organs_to_compare(const FacetRows& rows, const CertificateSettings& checking) {
+  CertificateSettings more = checking;
+  more.organs = std::max(more.organs, compared_organs);
+  return choose_organs(rows, more);
+}
+
+std::vector<std::uint64_t> rows_of(const std::vector<ChosenOrgan>& a, const std::vector<ChosenOrgan>& b) {
+  std::set<std::uint64_t> rows;
+  for (const auto* chosen : {&a, &b})
+    for (const auto& c : *chosen) rows.insert(c.organ);
+  return {rows.begin(), rows.end()};
+}
+
+bool refine_further(const Scene& scene, const SolveReport& report, Certificate& certificate, const std::vector<SolveDifference>& to_earlier,
+                    Refinement& refinement, MethodChoice& choice, Progress& progress) {
+  const auto& goal = refinement.goal();
+  const double fineness = *choice.fineness;
+  refinement.add(fineness, certificate, to_earlier);
+  certificate.wanted = goal;
+  const auto expected = [&](double at) {
+    return percent_of_bands(scene, goal, [&](std::size_t b) { return refinement.expected(b, at, 0.0); });
+  };
+  const std::string wanted = percent_of_bands(scene, goal, [&](std::size_t b) { return goal[b]; });
+  if (report.status != SolveStatus::converged || refinement.reached()) {
+    progress.line(fmt::format("error of about {} at fineness {:.2f}; wanted {}", expected(fineness), fineness, wanted));
+    return false;
+  }
+  const double limit = finest_in_memory(choice, report);
+  const auto next = refinement.next(limit);
+  if (!next) {
+    progress.line(fmt::format("error of about {} at fineness {:.2f}; wanted {}, not reached", expected(fineness), fineness, wanted));
+    return false;
+  }
+  progress.line(fmt::format("error of about {} at fineness {:.2f}; wanted {}: solving again at fineness {:.2f}{}, where {} is expected",
+                            expected(fineness), fineness, wanted, *next,
+                            *next < limit - 1e-9      ? ""
+                            : limit < finest_fineness ? ", the finest that memory allows"
+                                                      : ", the finest there is",
+                            expected(*next)));
+  choice.fineness = next;
+  return true;
+}
+
+void say_not_reached(const Scene& scene, double fineness, const Refinement& refinement, const Certificate& certificate, Progress& progress) {
+  const auto& goal = refinement.goal();
+  progress.line(fmt::format(
+      "sunfleck: the wanted error, {}, was not reached: about {} is found (certificate {}). The result is written with status 'not_converged'. For "
+      "less: another method, or --method reference with as many --samples as it takes",
+      percent_of_bands(scene, goal, [&](std::size_t b) { return goal[b]; }),
+      percent_of_bands(scene, goal, [&](std::size_t b) { return refinement.expected(b, fineness, 0.0); }),
+      percent_of_bands(scene, goal, [&](std::size_t b) { return certificate.rmse[b]; })));
+}
+
+}  // namespace sunfleck
