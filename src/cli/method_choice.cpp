@@ -18,9 +18,6 @@ namespace {
 
 const std::vector<std::string> methods{"instantiation", "clustering", "flat", "direct", "reference"};
 
-/// Mean share of lines inside copies that meet another one, above which the instantiation's error exceeds the clustering's.
-constexpr double most_tangled = 0.01;
-
 constexpr std::array<Quality, 3> qualities{Quality::draft, Quality::standard, Quality::fine};
 
 std::string checked_method(const std::string& name) {
@@ -70,7 +67,7 @@ MethodReason default_method(const Scene& scene, Quality quality, Progress& progr
   const auto classes = classes_of_policies(scene);
   settings.classes = classes ? &*classes : nullptr;
   const auto plan = plan_sharing(scene, place(scene), settings, progress);
-  if (plan.tangled > most_tangled)
+  if (plan.tangled > much_tangled)
     return {"clustering",
             fmt::format("{:.1f} % of what is seen inside plants is hidden by others that reach into them: too much for instantiation",
                         100 * plan.tangled)};

@@ -87,14 +87,16 @@ bool refine_further(const Scene& scene, const SolveReport& report, Certificate& 
   return true;
 }
 
-void say_not_reached(const Scene& scene, double fineness, const Refinement& refinement, const Certificate& certificate, Progress& progress) {
+void say_not_reached(const Scene& scene, double fineness, const Refinement& refinement, const Certificate& certificate,
+                     Progress& progress) {
   const auto& goal = refinement.goal();
-  progress.line(fmt::format(
-      "sunfleck: the wanted error, {}, was not reached: about {} is found (certificate {}). The result is written with status 'not_converged'. For "
-      "less: another method, or --method reference with as many --samples as it takes",
-      percent_of_bands(scene, goal, [&](std::size_t b) { return goal[b]; }),
-      percent_of_bands(scene, goal, [&](std::size_t b) { return refinement.expected(b, fineness, 0.0); }),
-      percent_of_bands(scene, goal, [&](std::size_t b) { return certificate.rmse[b]; })));
+  progress.line(
+      fmt::format("sunfleck: the wanted error, {}, was not reached: about {} is found (certificate {}). The result is written with status "
+                  "'not_converged'. For "
+                  "less: another method, or --method reference with as many --samples as it takes",
+                  percent_of_bands(scene, goal, [&](std::size_t b) { return goal[b]; }),
+                  percent_of_bands(scene, goal, [&](std::size_t b) { return refinement.expected(b, fineness, 0.0); }),
+                  percent_of_bands(scene, goal, [&](std::size_t b) { return certificate.rmse[b]; })));
 }
 
 }  // namespace sunfleck

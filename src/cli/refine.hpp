@@ -24,8 +24,8 @@ std::vector<std::uint64_t> rows_of(const std::vector<ChosenOrgan>& a, const std:
 
 /// Judges a solve by its certificate and by its distances to earlier ones; sets the fineness of the next one and returns true where one is
 /// needed.
-bool refine_further(const Scene& scene, const SolveReport& report, Certificate& certificate,
-                    const std::vector<SolveDifference>& to_earlier, Refinement& refinement, MethodChoice& choice, Progress& progress);
+bool refine_further(const Scene& scene, const SolveReport& report, Certificate& certificate, const std::vector<SolveDifference>& to_earlier,
+                    Refinement& refinement, MethodChoice& choice, Progress& progress);
 
 void say_not_reached(const Scene& scene, double fineness, const Refinement& refinement, const Certificate& certificate, Progress& progress);
 

@@ -10,6 +10,7 @@
 #include <sunfleck/core/error.hpp>
 #include <sunfleck/core/memory.hpp>
 #include <sunfleck/core/release_memory.hpp>
+#include <sunfleck/instantiation/plan.hpp>
 
 #include "instantiation/batches.hpp"
 #include "instantiation/closed_light.hpp"
@@ -119,6 +120,11 @@ SolveReport solve_instantiation(const Scene& scene, const PlacedScene& placed, c
   release_freed_memory();  // what reading and classifying have left
   SceneLight s(scene, placed, settings, progress);
   const auto links = report_originals(s, report);
+  if (s.members.tangled > much_tangled)
+    progress.line(fmt::format(
+        "note: {:.1f} % of what is seen inside copies is hidden by others that reach into them, or by images of their own across "
+        "the cell's border: expect errors of several per cent, and a balance that does not close; clustering has no such limit",
+        100 * s.members.tangled));
   timed("originals");
   s.project_sun();
   timed("sun");

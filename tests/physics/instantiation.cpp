@@ -12,13 +12,13 @@ using namespace radiosity_runs;
 
 namespace {
 
-Run instantiated(const Scene& scene, Quality quality = Quality::standard, int threads = 0) {
+Run instantiated(const Scene& scene, Quality quality = Quality::standard, int threads = 0, Progress& progress = silent()) {
   FacetScene facets = expand(scene);
   Kept kept(scene.states.size(), facets.size(), scene.band_count());
   InstantiationSettings settings;
   settings.density = instantiation_density(quality);
   settings.threads = threads;
-  auto report = solve_instantiation(scene, place(scene), settings, kept, silent());
+  auto report = solve_instantiation(scene, place(scene), settings, kept, progress);
   return {std::move(facets), std::move(kept), std::move(report)};
 }
 
@@ -108,6 +108,26 @@ TEST_CASE("instantiation: copies that reach into each other are solved as one") 
     CAPTURE(band, relative_rms(a, b));
     CHECK(relative_rms(a, b) < (band == 0 ? 0.015 : 0.022));
   }
+}
+
+TEST_CASE("instantiation: says so where copies reach into each other across the border of the cell, which cannot be solved as one") {
+  class Heard final : public Progress {
+   public:
+    void line(std::string_view text) override { said += std::string(text) + "\n"; }
+    std::string said;
+  };
+  const auto said_in_cell_of = [](double size) {
+    auto scene = crowns({Placement{}}, green(), {0.12, 0.2});
+    scene.periodic = PeriodicCell{0, 0, size, size};
+    scene.ground = flat_ground({size, size}, {size / 2, size / 2}, {2, 2}, {0.12, 0.2});
+    light(scene);
+    Heard progress;
+    instantiated(scene, Quality::draft, 0, progress);
+    return progress.said;
+  };
+  const std::string note = "% of what is seen inside copies is hidden by others that reach into them, or by images of their own";
+  CHECK(said_in_cell_of(0.7).find(note) != std::string::npos);
+  CHECK(said_in_cell_of(1.4).find(note) == std::string::npos);
 }
 
 TEST_CASE("instantiation: one plant in a small cell is lit as nine in a cell of three by three") {

@@ -10,10 +10,14 @@
 
 namespace sunfleck {
 
+/// Mean share of the lines inside copies that other copies, or images of their own across a cell's border, stand in: from here on errors
+/// are of several per cent.
+inline constexpr double much_tangled = 0.01;
+
 /// What copies share.
 struct InstantiationSharing {
   std::uint64_t originals = 0, copies = 0, merged_copies = 0, elements = 0;
-  double tangled = 0;  ///< mean share of lines inside copies that meet another copy: above 1 % the method loses accuracy
+  double tangled = 0;  ///< see much_tangled
   // Of plants that name a policy, while they are closed:
   std::uint64_t pieces = 0;      ///< originals that stand for structures, and for what is in none of them
   std::uint64_t structures = 0;  ///< structures that another stands in for
