@@ -152,7 +152,7 @@ double Refinement::expected(std::size_t band, double fineness, double cautious) 
 
 bool Refinement::below(double fineness, double cautious) const {
   for (std::size_t b = 0; b < goal_.size(); ++b)
-    if (goal_[b] > 0 && expected(b, fineness, cautious) > goal_[b]) return false;
+    if (goal_[b] > 0 && expected(b, fineness, cautious) > margin * goal_[b]) return false;
   return true;
 }
 

@@ -49,10 +49,10 @@ class Refinement {
   /// What a solve at `fineness` amounts to: by its certificate, and by its distances to all the solves before it.
   void add(double fineness, const Certificate& certificate, const std::vector<SolveDifference>& to_earlier);
 
-  /// Is the last solve good enough? It is, where the estimate is below the goal in every band: the first solve's by `caution` standard
-  /// errors and on its face, a later one's by .5, if its certificate does not speak against it by 1.64 standard errors.
+  /// Is the last solve good enough? It is, where the estimate is below `margin` times the goal in every band: the first solve's by
+  /// `caution` standard errors and on its face, a later one's by .5, if its certificate does not speak against it by 1.64 standard errors.
   bool reached() const;
-  /// The fineness to go on with, at most `limit`: where the estimate and `caution` standard errors are below the goal. None where that
+  /// The fineness to go on with, at most `limit`: where the estimate and `caution` standard errors are below that. None where that
   /// brings nothing more, or after `most_solves`.
   std::optional<double> next(double limit) const;
   /// Estimate of band b's rms error at a fineness, `cautious` standard errors added to its square.
@@ -61,6 +61,8 @@ class Refinement {
   const std::vector<double>& goal() const { return goal_; }
   static constexpr std::size_t most_solves = 3;
   static constexpr double caution = 1.5;
+  /// In wheat, whose blades are narrow, NIR errors fall more slowly than the curve, and what two solves have wrong alike is more.
+  static constexpr double margin = 0.93;
 
   /// rmse^2 and the variance of that; no variance: nothing is known.
   struct Found {

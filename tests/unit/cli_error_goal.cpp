@@ -85,7 +85,7 @@ TEST_CASE("densities at the fineness of a quality are the quality's, and rise be
 
 TEST_CASE("a solve that is good enough by a margin is the last", "[cli][error]") {
   Refinement r({0.05, 0.05}, "clustering");
-  r.add(r.first(), certificate({0.02, 0.04}, 0.3), {});
+  r.add(r.first(), certificate({0.02, 0.038}, 0.3), {});
   CHECK(r.reached());
   Refinement near({0.05, 0.05}, "clustering");
   near.add(near.first(), certificate({0.02, 0.048}, 0.3), {});  // below, but not by a standard error
@@ -97,9 +97,9 @@ TEST_CASE("the next solve is as fine as the worst band needs, and no finer", "[c
   r.add(r.first(), certificate({0.02, 0.05}, 0.2), {});
   CHECK_FALSE(r.reached());
   const double next = r.next(finest_fineness).value();
-  CHECK(r.expected(1, next, Refinement::caution) <= 0.02);
-  CHECK(r.expected(1, next - 0.06, Refinement::caution) > 0.02);
-  CHECK(r.expected(0, next, Refinement::caution) <= 0.01);
+  CHECK(r.expected(1, next, Refinement::caution) <= Refinement::margin * 0.02);
+  CHECK(r.expected(1, next - 0.06, Refinement::caution) > Refinement::margin * 0.02);
+  CHECK(r.expected(0, next, Refinement::caution) <= Refinement::margin * 0.01);
   // of a band of which nothing is asked nothing is asked
   Refinement par({0.01, 0.0}, "clustering");
   par.add(par.first(), certificate({0.02, 0.05}, 0.2), {});

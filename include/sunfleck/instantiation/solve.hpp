@@ -10,21 +10,21 @@ namespace sunfleck {
 
 /// How finely an original is sampled by global lines.
 struct OperatorDensity {
-  std::uint32_t directions;    ///< over the hemisphere [-]
-  double lines_per_organ;      ///< mean lines that meet an organ, per direction [-]
-  std::uint32_t field_pixels;  ///< K: fields of light that enter and leave have K x K pixels a direction [-]
-  std::uint32_t points;        ///< rays per pixel from a copy to what surrounds it [-]
+  std::uint32_t directions = 0;    ///< over the hemisphere [-]
+  double lines_per_organ = 0;      ///< mean lines that meet an organ, per direction [-]
+  std::uint32_t field_pixels = 0;  ///< K: fields of light that enter and leave have K x K pixels a direction [-]
+  std::uint32_t points = 0;        ///< rays per pixel from a copy to what surrounds it [-]
 };
 
 struct InstantiationDensity {
-  OperatorDensity coarse;      ///< for the iteration
-  OperatorDensity fine;        ///< once, for the final gather
-  double elements_per_organ;   ///< elements of an organ of the mean size [-]
-  std::uint32_t sun_samples;   ///< points of the sun's disc [-]
-  double sun_lines_per_organ;  ///< over all sun samples together [-]
-  std::uint32_t ground_rays;   ///< per facet of the ground [-]
-  double tolerance;            ///< of the outer iteration: last change of the fields, extrapolated, over the fields [-]
-  double inner_tolerance;      ///< change of a sweep inside a copy over the radiosities [-]
+  OperatorDensity coarse;          ///< for the iteration
+  OperatorDensity fine;            ///< once, for the final gather
+  double elements_per_organ = 0;   ///< elements of an organ of the mean size [-]
+  std::uint32_t sun_samples = 0;   ///< points of the sun's disc [-]
+  double sun_lines_per_organ = 0;  ///< over all sun samples together [-]
+  std::uint32_t ground_rays = 0;   ///< per facet of the ground [-]
+  double tolerance = 0;            ///< of the outer iteration: last change of the fields, extrapolated, over the fields [-]
+  double inner_tolerance = 0;      ///< change of a sweep inside a copy over the radiosities [-]
 };
 InstantiationDensity instantiation_density(Quality quality);
 

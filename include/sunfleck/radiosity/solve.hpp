@@ -15,16 +15,16 @@ enum class RadiosityMethod {
 
 /// Sampling densities; each quality has its own set (radiosity/quality.cpp).
 struct RadiosityDensity {
-  std::uint32_t directions;      ///< global-line directions over the hemisphere [-]
-  double lines_per_element;      ///< mean lines that meet an element, per direction [-]
-  double elements_per_organ;     ///< elements of an organ of the mean size [-]
-  std::uint32_t sky_directions;  ///< directions for the sky's visibility, method direct alone: else the global lines bring it [-]
-  double sky_lines_per_organ;    ///< per direction [-]
-  std::uint32_t sun_samples;     ///< fewest points of the sun's disc, each with a grid of its own; more for wide penumbrae [-]
-  double sun_lines_per_organ;    ///< over all sun samples together [-]
-  double link_error;             ///< threshold of the refinement oracle, relative to the mean irradiance [-]
-  double tolerance;              ///< relative true residual of the iteration [-]
-  double fewest_hits = 0;        ///< of global lines on plants, over all directions: small scenes get a finer grid [-]
+  std::uint32_t directions = 0;      ///< global-line directions over the hemisphere [-]
+  double lines_per_element = 0;      ///< mean lines that meet an element, per direction [-]
+  double elements_per_organ = 0;     ///< elements of an organ of the mean size [-]
+  std::uint32_t sky_directions = 0;  ///< directions for the sky's visibility, method direct alone: else the global lines bring it [-]
+  double sky_lines_per_organ = 0;    ///< per direction [-]
+  std::uint32_t sun_samples = 0;     ///< fewest points of the sun's disc, each with a grid of its own; more for wide penumbrae [-]
+  double sun_lines_per_organ = 0;    ///< over all sun samples together [-]
+  double link_error = 0;             ///< threshold of the refinement oracle, relative to the mean irradiance [-]
+  double tolerance = 0;              ///< relative true residual of the iteration [-]
+  double fewest_hits = 0;            ///< of global lines on plants, over all directions: small scenes get a finer grid [-]
 };
 RadiosityDensity density_of(Quality quality);
 
