@@ -60,7 +60,7 @@ class Refinement {
 
   const std::vector<double>& goal() const { return goal_; }
   static constexpr std::size_t most_solves = 3;
-  static constexpr double caution = 1.5;
+  static constexpr double caution = 1.3;
   /// In wheat, whose blades are narrow, NIR errors fall more slowly than the curve, and what two solves have wrong alike is more.
   static constexpr double margin = 0.93;
 
