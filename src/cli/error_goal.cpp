@@ -178,7 +178,7 @@ bool Refinement::reached() const {
   if (solves_.empty()) return false;
   const double fineness = solves_.back().fineness;
   if (solves_.size() == 1) return last_says(fineness, 1.0, 0.0) && below(fineness, caution);
-  return !contradicted(fineness) && below(fineness, solves_.size() == 2 ? 1.1 : 0.6);
+  return !contradicted(fineness) && below(fineness, 0.5);
 }
 
 std::optional<double> Refinement::next(double limit) const {
