@@ -21,9 +21,10 @@
 #include <sunfleck/scene/facets.hpp>
 #include <sunfleck/view/picture_sink.hpp>
 
+#include "cli/error_goal.hpp"
 #include "cli/method_choice.hpp"
 #include "cli/output_path.hpp"
-#include "cli/refine.hpp"
+#include "cli/solve_again.hpp"
 #include "cli/solve_table.hpp"
 #include "cli/text_units.hpp"
 

@@ -1,4 +1,4 @@
-// Error and CPU seconds of a method over fineness, against a reference: what the curves of `solve --error` (cli/error_goal.cpp) come from.
+// Error and CPU seconds of a method over fineness, against a reference: what the curves of `solve --error` (cli/refinement.cpp) come from.
 //   build/tests/bin/bench_error_over_fineness SCENE.toml REFERENCE.h5 METHOD SEEDS FINENESS...
 #include <fmt/format.h>
 

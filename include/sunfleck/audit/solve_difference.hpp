@@ -17,7 +17,7 @@ struct SolveDifference {
 };
 
 /// `compared`: organs as choose_organs() draws them, of which `coarse` and `fine` hold all; `balance` of the finer solve. No rays, no
-/// noise: what it leaves open is which organs were drawn, and how far the two errors go together (cli/error_goal.hpp).
+/// noise: what it leaves open is which organs were drawn, and how far the two errors go together (cli/refinement.hpp).
 SolveDifference solve_difference(const std::vector<ChosenOrgan>& compared, const OrganTotals& coarse, const OrganTotals& fine,
                                  const std::vector<std::vector<Balance>>& balance);
 

@@ -1,4 +1,4 @@
-#include "cli/refine.hpp"
+#include "cli/solve_again.hpp"
 
 #include <algorithm>
 #include <set>

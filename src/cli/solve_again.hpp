@@ -11,8 +11,8 @@
 #include <sunfleck/scene/scene.hpp>
 #include <sunfleck/scene/solution.hpp>
 
-#include "cli/error_goal.hpp"
 #include "cli/method_choice.hpp"
+#include "cli/refinement.hpp"
 
 namespace sunfleck {
 
