@@ -137,7 +137,7 @@ std::optional<double> Refinement::next(double limit) const {
   if (last >= limit - 0.5 * step) return std::nullopt;
   double fineness = last + step;
   const bool first = solves_.size() == 1;
-  const auto enough = [&](double f) { return below(f, caution) && (first ? last_says(f, 0.93, 0.0) : !contradicted(f)); };
+  const auto enough = [&](double f) { return below(f, caution) && (first ? last_says(f, margin, 0.0) : !contradicted(f)); };
   while (fineness < limit && !enough(fineness)) fineness += step;
   return std::min(fineness, limit);
 }

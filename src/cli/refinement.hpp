@@ -11,8 +11,9 @@
 
 namespace sunfleck {
 
-/// How the error of a method falls with fineness (radiosity/fineness.hpp), relative to that at 0: measured on coffee, a canopy, wheat and a
-/// poplar by tests/bench/error_over_fineness.cpp. Between the entries, at 0, .5, 1, ..., logarithms are interpolated.
+/// How the error of a method falls with fineness (radiosity/fineness.hpp), relative to that at 0: measured on a canopy, coffee, a poplar, a
+/// grove and ten poplars by tests/bench/error_over_fineness.cpp (docs/accuracy.md). Between the entries, at 0, .5, 1, ..., logarithms are
+/// interpolated.
 double error_at(const std::string& method, double fineness);
 
 /// Finds the fineness for a goal from what is known of solves at other ones. In all, g(f) = error_at(f), and c = `spread_of_curves` is how
