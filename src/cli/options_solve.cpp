@@ -25,7 +25,7 @@ void define_solve(CLI::App& verb, SolveOptions& o) {
   verb.add_option(
           "--error", o.error,
           "wanted rms error of an organ's absorbed light, of the mean: 2%, or 0.02, or by band, PAR=1%,NIR=2%. Solves at draft, and "
-          "again as fine as its certificate says it takes; exit code 3 where that does not reach it")
+          "again as fine as its certificates and the distance between solves say it takes; exit code 3 where that does not reach it")
       ->type_name("ERROR");
   verb.add_option("--samples", o.samples, "reference method only: paths per facet")->type_name("N")->check(count_from(16, 4294967295.0));
   verb.add_option("--threads", o.threads, "threads to use; 0 is all cores. The result has the same bits for any number")
