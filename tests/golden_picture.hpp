@@ -10,6 +10,8 @@
 
 #include <sunfleck/view/image.hpp>
 
+#include "places.hpp"
+
 namespace sunfleck::test {
 
 /// RGB, 8 bits; fails the test if the file cannot be read.

@@ -10,6 +10,8 @@
 #include <sunfleck/format/species_toml.hpp>
 #include <sunfleck/scene/scene.hpp>
 
+#include "places.hpp"
+
 namespace young_poplars {
 
 /// Of three years, 2 m apart, as plants of a scene whose optics are those of leaves and of bark. `policy`: a file's path, or none.

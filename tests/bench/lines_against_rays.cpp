@@ -22,6 +22,7 @@
 #include <sunfleck/format/scene_toml.hpp>
 #include <sunfleck/visibility/rays.hpp>
 
+#include "places.hpp"
 #include "radiosity/direct_light.hpp"
 #include <sunfleck/radiosity/elements.hpp>
 #include "radiosity/gmres.hpp"

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 
+#include "places.hpp"
 #include "run_program.hpp"
 
 namespace {

@@ -9,6 +9,8 @@
 
 #include <fuzz/formats.hpp>
 
+#include "places.hpp"
+
 using namespace sunfleck;
 
 TEST_CASE("The corpus of every parser is read or refused, quickly", "[hostile][corpus]") {

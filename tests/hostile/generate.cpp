@@ -6,6 +6,7 @@
 #include <sunfleck/format/read_plant.hpp>
 #include <sunfleck/format/species_toml.hpp>
 
+#include "places.hpp"
 #include "run_program.hpp"
 
 using namespace sunfleck;

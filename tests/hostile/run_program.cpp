@@ -1,3 +1,4 @@
+#include "places.hpp"
 #include "run_program.hpp"
 
 #include <csignal>

@@ -3,6 +3,8 @@
 
 #include <scene_files.hpp>
 
+#include "places.hpp"
+
 using namespace sunfleck;
 
 namespace {

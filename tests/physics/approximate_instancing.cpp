@@ -6,6 +6,7 @@
 #include <sunfleck/instantiation/solve.hpp>
 #include <sunfleck/policy/policy_toml.hpp>
 
+#include "places.hpp"
 #include "radiosity_runs.hpp"
 #include "young_poplars.hpp"
 

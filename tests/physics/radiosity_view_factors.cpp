@@ -8,6 +8,7 @@
 
 #include <sunfleck/visibility/rays.hpp>
 
+#include "places.hpp"
 #include "radiosity/line_links.hpp"
 #include "radiosity_runs.hpp"
 

@@ -14,6 +14,7 @@
 #include <sunfleck/result/compare.hpp>
 #include <sunfleck/result/result_writer.hpp>
 
+#include "places.hpp"
 #include "format_files.hpp"
 
 using namespace sunfleck;

@@ -5,6 +5,7 @@
 #include <sunfleck/result/compare.hpp>
 #include <sunfleck/result/result_reader.hpp>
 
+#include "places.hpp"
 #include "run_program.hpp"
 
 using namespace sunfleck;

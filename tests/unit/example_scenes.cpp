@@ -3,6 +3,8 @@
 
 #include <sunfleck/format/scene_toml.hpp>
 
+#include "places.hpp"
+
 using namespace sunfleck;
 
 TEST_CASE("The growth chamber of the how-to is read whole: lamps, walls, sensors", "[format][lamps][sensors]") {

@@ -5,6 +5,8 @@
 #include <format_files.hpp>
 #include <sunfleck/plant/build.hpp>
 
+#include "places.hpp"
+
 using namespace sunfleck;
 
 namespace {

@@ -8,6 +8,8 @@
 #include <sunfleck/scene/build.hpp>
 #include <sunfleck/scene/facets.hpp>
 
+#include "places.hpp"
+
 using namespace sunfleck;
 
 namespace {

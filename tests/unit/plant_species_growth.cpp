@@ -6,6 +6,8 @@
 
 #include <sunfleck/format/species_toml.hpp>
 
+#include "places.hpp"
+
 using namespace sunfleck;
 
 namespace {

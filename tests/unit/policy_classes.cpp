@@ -16,6 +16,8 @@
 #include <sunfleck/policy/classes.hpp>
 #include <sunfleck/scene/build.hpp>
 
+#include "places.hpp"
+
 using namespace sunfleck;
 
 namespace {

@@ -8,6 +8,8 @@
 #include <sunfleck/core/error.hpp>
 #include <sunfleck/policy/policy_toml.hpp>
 
+#include "places.hpp"
+
 using namespace sunfleck;
 
 namespace {

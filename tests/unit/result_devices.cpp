@@ -9,6 +9,7 @@
 #include <sunfleck/result/result_reader.hpp>
 #include <sunfleck/view/export.hpp>
 
+#include "places.hpp"
 #include "result_scene.hpp"
 
 using namespace sunfleck;

@@ -10,6 +10,7 @@
 #include <sunfleck/scene/build.hpp>
 #include <sunfleck/view/export.hpp>
 
+#include "places.hpp"
 #include "result_scene.hpp"
 
 using namespace sunfleck;
