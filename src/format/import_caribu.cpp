@@ -20,7 +20,7 @@ namespace sunfleck {
 namespace {
 
 /// One optical species: a stem's reflectance, then reflectance and transmittance of a leaf's upper and lower side; -1 = not given.
-struct Species {
+struct OptSpecies {
   double stem, upper_reflectance, upper_transmittance, lower_reflectance, lower_transmittance;
   long line;
 };
@@ -29,7 +29,7 @@ struct OptFile {
   std::string file, band;
   double soil = -1;
   long soil_line = 0;
-  std::vector<Species> species;
+  std::vector<OptSpecies> species;
 };
 
 /// Calls visit(words, number) for each line of a text file.
@@ -98,7 +98,7 @@ class OptReader {
   }
 
   void species(Words& words) {
-    Species s{};
+    OptSpecies s{};
     s.line = line_;
     lambertian(words), s.stem = fraction(words, "the stem's reflectance");
     lambertian(words), s.upper_reflectance = fraction(words, "the upper side's reflectance");
@@ -250,7 +250,7 @@ class Caribu {
     for (const auto& opt : opts_) {
       if (number < 1 || number > opt.species.size())
         throw InputError(opt.file, fmt::format("{} species", opt.species.size()), fmt::format("species {}, which {} has", number, can_));
-      const Species& s = opt.species[number - 1];
+      const OptSpecies& s = opt.species[number - 1];
       const auto given = [&](double value, const char* what) {
         if (value < 0)
           throw InputError(location(opt.file, s.line), fmt::format("no {} of species {}", what, number),

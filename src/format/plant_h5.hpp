@@ -18,13 +18,13 @@ inline constexpr const char* format_name = "sunfleck-plant";
 inline constexpr std::int64_t format_version = 1;
 
 /// Kinds of attribute values: the alternatives of AttributeValue, in order.
-enum Kind : std::uint8_t { truth = 0, whole = 1, number = 2, text = 3 };
+enum ValueKind : std::uint8_t { truth = 0, whole = 1, number = 2, text = 3 };
 
 /// Three rows of four: linear part and translation.
-using Matrix = std::array<double, 12>;
+using FrameRows = std::array<double, 12>;
 
-inline Matrix matrix_of(const Affine& a) {
-  Matrix m{};
+inline FrameRows matrix_of(const Affine& a) {
+  FrameRows m{};
   for (int row = 0; row < 3; ++row) {
     for (int column = 0; column < 3; ++column) m[4 * row + column] = a.linear[column][row];
     m[4 * row + 3] = a.translation[row];
@@ -32,7 +32,7 @@ inline Matrix matrix_of(const Affine& a) {
   return m;
 }
 
-inline Affine affine_of(const Matrix& m) {
+inline Affine affine_of(const FrameRows& m) {
   Affine a;
   for (int row = 0; row < 3; ++row) {
     for (int column = 0; column < 3; ++column) a.linear[column][row] = m[4 * row + column];

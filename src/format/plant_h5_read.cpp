@@ -163,7 +163,7 @@ class PlantReader {
     const auto parent = values<std::uint32_t>("/structures/parent");
     const auto type = values<std::uint32_t>("/structures/type");
     const auto name = values<std::uint32_t>("/structures/name");
-    const auto frame = values<Matrix>("/structures/frame", {3, 4});
+    const auto frame = values<FrameRows>("/structures/frame", {3, 4});
     same_rows("/structures/type", type.size(), parent.size());
     same_rows("/structures/name", name.size(), parent.size());
     same_rows("/structures/frame", frame.size(), parent.size());
@@ -241,7 +241,7 @@ class PlantReader {
     const auto first = values<std::uint32_t>("/shapes/first_triangle");
     const auto count = values<std::uint32_t>("/shapes/triangle_count");
     const auto material = values<std::uint32_t>("/shapes/material");
-    const auto placement = values<Matrix>("/shapes/placement", {3, 4});
+    const auto placement = values<FrameRows>("/shapes/placement", {3, 4});
     same_rows("/shapes/mesh", mesh.size(), structure.size());
     same_rows("/shapes/first_triangle", first.size(), structure.size());
     same_rows("/shapes/triangle_count", count.size(), structure.size());

@@ -70,8 +70,8 @@ class PlantPacker {
     write_raw(path, h5::memory_type<T>(), values.data(), {values.size()}, sizeof(T));
   }
 
-  void write_matrices(const std::string& path, const std::vector<Matrix>& values) {
-    write_raw(path, H5T_NATIVE_DOUBLE, values.data(), {values.size(), 3, 4}, sizeof(Matrix));
+  void write_matrices(const std::string& path, const std::vector<FrameRows>& values) {
+    write_raw(path, H5T_NATIVE_DOUBLE, values.data(), {values.size(), 3, 4}, sizeof(FrameRows));
   }
 
   void write_strings(const std::string& path, const std::vector<std::string>& rows) {
@@ -117,7 +117,7 @@ class PlantPacker {
     std::vector<std::uint8_t> kind;
     std::vector<std::int64_t> wholes;
     std::vector<double> numbers;
-    std::vector<Matrix> frame;
+    std::vector<FrameRows> frame;
     for (std::size_t i = 0; i < plant.structures.size(); ++i) {
       const Structure& s = plant.structures[i];
       parent.push_back(s.parent);
@@ -169,7 +169,7 @@ class PlantPacker {
 
   void write_shapes(const Plant& plant) {
     std::vector<std::uint32_t> structure, mesh, first, count, material;
-    std::vector<Matrix> placement;
+    std::vector<FrameRows> placement;
     for (const auto& s : plant.shapes) {
       structure.push_back(s.structure);
       mesh.push_back(s.mesh);

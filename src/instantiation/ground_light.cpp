@@ -38,8 +38,9 @@ GroundView empty_ground_view(const Scene& scene, const std::vector<Triangle>& gr
   return out;
 }
 
-GroundView view_from_ground(const Scene& scene, const std::vector<Triangle>& ground, const Surroundings& around, const LightSources& lights,
-                            std::uint32_t rays, std::uint32_t sun_samples, std::uint64_t seed, Progress& progress) {
+GroundView view_from_ground(const Scene& scene, const std::vector<Triangle>& ground, const MemberSurroundings& around,
+                            const LightSources& lights, std::uint32_t rays, std::uint32_t sun_samples, std::uint64_t seed,
+                            Progress& progress) {
   GroundView out = empty_ground_view(scene, ground, lights, rays);
   const std::size_t facets = ground.size();
   std::vector<std::vector<Vec3>> disc;

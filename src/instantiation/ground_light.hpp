@@ -7,7 +7,7 @@
 #include <sunfleck/core/progress.hpp>
 #include <sunfleck/light/light_sources.hpp>
 
-#include "instantiation/surroundings.hpp"
+#include "instantiation/member_surroundings.hpp"
 
 namespace sunfleck {
 
@@ -31,7 +31,8 @@ struct GroundView {
 /// With room for all that is seen, and nothing seen yet.
 GroundView empty_ground_view(const Scene& scene, const std::vector<Triangle>& ground, const LightSources& lights, std::uint32_t rays);
 
-GroundView view_from_ground(const Scene& scene, const std::vector<Triangle>& ground, const Surroundings& around, const LightSources& lights,
-                            std::uint32_t rays, std::uint32_t sun_samples, std::uint64_t seed, Progress& progress);
+GroundView view_from_ground(const Scene& scene, const std::vector<Triangle>& ground, const MemberSurroundings& around,
+                            const LightSources& lights, std::uint32_t rays, std::uint32_t sun_samples, std::uint64_t seed,
+                            Progress& progress);
 
 }  // namespace sunfleck

@@ -13,7 +13,7 @@
 #include <sunfleck/scene/facets.hpp>
 
 #include "instantiation/coincident.hpp"
-#include "instantiation/surroundings.hpp"
+#include "instantiation/member_surroundings.hpp"
 
 namespace sunfleck {
 
@@ -148,13 +148,13 @@ struct Tangle {
   std::uint32_t a, b;
 };
 
-std::vector<Tangle> tangles(const Members& members, const Surroundings& around) {
+std::vector<Tangle> tangles(const Members& members, const MemberSurroundings& around) {
   std::vector<std::vector<Tangle>> found(members.size());
   tbb::parallel_for(std::uint32_t{0}, static_cast<std::uint32_t>(members.size()), [&](std::uint32_t m) {
     const auto& segments = members.coarse_of(m).segments;
     std::map<std::uint32_t, std::uint32_t> met;
     for (const auto& segment : segments)
-      if (const auto j = around.stands_between(m, segment); j != Surroundings::none && j < members.size()) ++met[j];
+      if (const auto j = around.stands_between(m, segment); j != MemberSurroundings::none && j < members.size()) ++met[j];
     for (const auto& [j, n] : met) found[m].push_back({static_cast<double>(n) / static_cast<double>(segments.size()), m, j});
   });
   std::vector<Tangle> out;
@@ -213,7 +213,7 @@ Members make_members(const Scene& scene, const PlacedScene& placed, const Classi
                               approximation.pieces.size(), approximation.closed));
   auto originals = find_originals(scene, placed, approximation);
   Members members = with_light(scene, placed, std::move(approximation), std::move(originals), coarse, elements_per_organ, seed, progress);
-  const auto list = tangles(members, Surroundings(members, placed));
+  const auto list = tangles(members, MemberSurroundings(members, placed));
   members.tangled = mean_share(members, list);
   const auto groups = groups_of(members, list);
   if (groups.empty()) return members;
@@ -227,7 +227,7 @@ Members make_members(const Scene& scene, const PlacedScene& placed, const Classi
   members = with_light(scene, placed, std::move(approximation), std::move(found), coarse, elements_per_organ, seed, progress);
   members.made_with = std::max(members.made_with, made_apart);
   members.merged = merged_copies;
-  members.tangled = mean_share(members, tangles(members, Surroundings(members, placed)));
+  members.tangled = mean_share(members, tangles(members, MemberSurroundings(members, placed)));
   return members;
 }
 

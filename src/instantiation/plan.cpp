@@ -177,7 +177,7 @@ class Planner {
   double lines_of_sun() const { return density_.sun_samples / (pitch_ * pitch_); }
 
   void rays() {
-    const Surroundings around(members_, placed_);
+    const MemberSurroundings around(members_, placed_);
     double ends = 0;
     for (std::size_t m = 0; m < members_.size(); ++m) ends += size_of(m).points;
     const auto ground = empty_ground_view(scene_, members_.solved_ground(), lights_, rays_of_ground(members_, density_));

@@ -68,7 +68,7 @@ void SceneLight::project_sun() {
 }
 
 void SceneLight::look_around(SolveReport& report) {
-  around = std::make_unique<Surroundings>(members, placed);
+  around = std::make_unique<MemberSurroundings>(members, placed);
   const std::size_t n = members.size();
   field_start.assign(n + 1, 0);
   end_start.assign(n + 1, 0);

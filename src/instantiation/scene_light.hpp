@@ -12,7 +12,7 @@
 #include "instantiation/ground_light.hpp"
 #include "instantiation/members.hpp"
 #include "instantiation/memory_count.hpp"
-#include "instantiation/surroundings.hpp"
+#include "instantiation/member_surroundings.hpp"
 
 namespace sunfleck {
 
@@ -69,7 +69,7 @@ struct SceneLight {
   const LightSources lights;
   Members members;
   std::vector<LitCells> lit;  ///< per distinct sun
-  std::unique_ptr<Surroundings> around;
+  std::unique_ptr<MemberSurroundings> around;
   std::vector<std::uint64_t> field_start, end_start;  ///< [members + 1]
   std::vector<RayEnd> ends;                           ///< of the coarse operators' points
   GroundView ground;

@@ -7,7 +7,7 @@ namespace sunfleck {
 namespace {
 
 /// Light on the two sides of a facet, means over its cells.
-struct FacetLight {
+struct ArrivingLight {
   std::vector<float> scattered;  ///< [2][columns] irradiance [W m^-2]
   std::vector<float> sky, lit;   ///< [2][skies], [2][suns] as in DirectLight
   std::vector<float> lamp;       ///< [2][sets of lamps][b] irradiance [W m^-2]
@@ -28,7 +28,7 @@ class RowBlock {
   }
 
   /// Facet first + i, row t of the surface.
-  void facet(std::size_t i, std::size_t t, FacetLight& light, std::vector<Balance>& balance) {
+  void facet(std::size_t i, std::size_t t, ArrivingLight& light, std::vector<Balance>& balance) {
     const auto& optics = lit_.optics_of_row(t);
     const double area = lit_.facets.area[first_ + i];
     const bool is_plant = first_ + i < lit_.facets.plant_facets;
@@ -67,7 +67,7 @@ class RowBlock {
   }
 
  private:
-  void light_of_facet(std::size_t t, FacetLight& light) const {
+  void light_of_facet(std::size_t t, ArrivingLight& light) const {
     const auto& s = lit_.elements.surface;
     const auto& direct = lit_.direct;
     const std::uint32_t begin = s.first_cell[t], end = s.first_cell[t + 1];
@@ -118,7 +118,7 @@ void write_light_rows(const LitElements& lit, const ScatteredLight& scattered, c
     rows.start(first, count);
     tbb::parallel_for(std::size_t{0}, blocks, [&](std::size_t b) {
       std::fill(partial[b].begin(), partial[b].end(), Balance{});
-      FacetLight light;
+      ArrivingLight light;
       for (std::size_t i = b * block, end = std::min(count, (b + 1) * block); i < end; ++i) {
         const std::size_t t = row_of_facet[first + i];
         if (surface.split[t] > 0) rows.facet(i, t, light, partial[b]);

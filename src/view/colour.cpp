@@ -14,21 +14,21 @@ struct Tint {
   Rgb reflected, transmitted;
 };
 
-Tint tint_of(Surface surface) {
+Tint tint_of(SurfaceKind surface) {
   switch (surface) {
-    case Surface::leaf:
+    case SurfaceKind::leaf:
       return {{0.84f, 1.86f, 0.30f}, {1.04f, 1.86f, 0.10f}};
-    case Surface::stem:
+    case SurfaceKind::stem:
       return {{1.02f, 1.56f, 0.42f}, {1.08f, 1.72f, 0.20f}};
-    case Surface::bark:
+    case SurfaceKind::bark:
       return {{1.26f, 0.99f, 0.75f}, {1.26f, 0.99f, 0.75f}};
-    case Surface::ear:
+    case SurfaceKind::ear:
       return {{1.35f, 1.15f, 0.50f}, {1.40f, 1.25f, 0.35f}};
-    case Surface::flower:
+    case SurfaceKind::flower:
       return {{1.30f, 0.75f, 0.95f}, {1.35f, 0.70f, 0.95f}};
-    case Surface::made:
+    case SurfaceKind::made:
       return {{1.02f, 1.00f, 0.98f}, {1.02f, 1.00f, 0.98f}};
-    case Surface::soil:
+    case SurfaceKind::soil:
       return {{1.31f, 0.99f, 0.70f}, {1.31f, 0.99f, 0.70f}};
   }
   return {Rgb{1.0f}, Rgb{1.0f}};
@@ -52,17 +52,18 @@ bool has_word(const std::string& text, std::string_view word) {
   return false;
 }
 
-bool guess(const std::string& text, Surface& out) {
-  if (has_any(text, {"ground", "soil", "terrain"})) return out = Surface::soil, true;
-  if (has_any(text, {"leaf", "leaves", "blade", "lamina", "needle", "frond", "foliage"})) return out = Surface::leaf, true;
-  if (has_any(text, {"flower", "petal", "corolla", "blossom"})) return out = Surface::flower, true;
+bool guess(const std::string& text, SurfaceKind& out) {
+  if (has_any(text, {"ground", "soil", "terrain"})) return out = SurfaceKind::soil, true;
+  if (has_any(text, {"leaf", "leaves", "blade", "lamina", "needle", "frond", "foliage"})) return out = SurfaceKind::leaf, true;
+  if (has_any(text, {"flower", "petal", "corolla", "blossom"})) return out = SurfaceKind::flower, true;
   if (has_any(text, {"spike", "fruit", "grain", "panicle", "tassel", "seed"}) || has_word(text, "ear") || has_word(text, "cob"))
-    return out = Surface::ear, true;
-  if (has_any(text, {"stem", "culm", "sheath", "petiole", "rachis", "peduncle", "stalk"})) return out = Surface::stem, true;
-  if (has_any(text, {"trunk", "bark", "branch", "wood", "metamer", "internode", "twig", "bole", "axis"})) return out = Surface::bark, true;
+    return out = SurfaceKind::ear, true;
+  if (has_any(text, {"stem", "culm", "sheath", "petiole", "rachis", "peduncle", "stalk"})) return out = SurfaceKind::stem, true;
+  if (has_any(text, {"trunk", "bark", "branch", "wood", "metamer", "internode", "twig", "bole", "axis"}))
+    return out = SurfaceKind::bark, true;
   if (has_any(text, {"wall", "ceiling", "panel", "housing", "concrete", "metal", "glass", "plastic"}) || has_word(text, "door") ||
       has_word(text, "white") || has_word(text, "pot") || has_word(text, "pots"))
-    return out = Surface::made, true;
+    return out = SurfaceKind::made, true;
   return false;
 }
 
@@ -89,8 +90,8 @@ Rgb decode_srgb(const Rgb8& encoded) {
   return {channel(encoded[0]), channel(encoded[1]), channel(encoded[2])};
 }
 
-Surface surface_of(std::string_view organ_type, std::string_view optics_name) {
-  Surface out = Surface::leaf;
+SurfaceKind surface_of(std::string_view organ_type, std::string_view optics_name) {
+  SurfaceKind out = SurfaceKind::leaf;
   if (!guess(lower(optics_name), out)) guess(lower(organ_type), out);
   return out;
 }
@@ -108,7 +109,7 @@ ColourBands colour_bands(std::span<const std::string> names) {
   return {{one, one, one}, false};
 }
 
-Rgb facet_colour(const ColourBands& bands, const Optics& optics, Surface surface, const float* irradiance, Side side) {
+Rgb facet_colour(const ColourBands& bands, const Optics& optics, SurfaceKind surface, const float* irradiance, Side side) {
   const std::size_t b = optics.transmittance.size();
   const auto& reflectance = side == Side::front ? optics.reflectance_front : optics.reflectance_back;
   const float* own = irradiance + (side == Side::front ? 0 : b);

@@ -100,7 +100,7 @@ std::vector<Rgb> LitColours::light(std::size_t first, std::size_t count) const {
   const auto optics = geometry_.optics(first, count), type = geometry_.types_of(first, count);
   std::vector<Rgb> out(count);
   for (std::size_t i = 0; i < count; ++i) {
-    const Surface surface = first + i >= geometry_.plant_facets ? Surface::soil : surfaces_[optics[i]][type[i]];
+    const SurfaceKind surface = first + i >= geometry_.plant_facets ? SurfaceKind::soil : surfaces_[optics[i]][type[i]];
     const float* e = &irradiance[2 * i * bands];
     out[i] = 0.5f * (facet_colour(bands_, materials_[optics[i]], surface, e, Side::front) +
                      facet_colour(bands_, materials_[optics[i]], surface, e, Side::back));

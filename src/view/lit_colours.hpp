@@ -46,7 +46,7 @@ class LitColours {
   bool natural_, named_;
   std::string quantity_;
   std::vector<Optics> materials_;
-  std::vector<std::vector<Surface>> surfaces_;  ///< [material][organ type]
+  std::vector<std::vector<SurfaceKind>> surfaces_;  ///< [material][organ type]
   std::vector<std::string> names_;
   ColourBands bands_;
   Exposure exposure_;

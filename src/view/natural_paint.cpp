@@ -36,7 +36,8 @@ NaturalPaint::NaturalPaint(const DrawnScene& scene, const PlacedRays& rays, cons
   for (const auto& m : scene.materials())
     optics_.push_back({m.name, pick(m.reflectance_front), pick(m.reflectance_back), pick(m.transmittance)});
   for (const auto& entry : scene.geometry().plants) {
-    std::vector<std::vector<std::optional<Surface>>> known(optics_.size(), std::vector<std::optional<Surface>>(entry.plant->types.size()));
+    std::vector<std::vector<std::optional<SurfaceKind>>> known(optics_.size(),
+                                                               std::vector<std::optional<SurfaceKind>>(entry.plant->types.size()));
     auto& surfaces = surface_.emplace_back();
     for (std::size_t s = 0; s < entry.plant->shapes.size(); ++s) {
       const auto type = entry.plant->structures[entry.plant->shapes[s].structure].type;
@@ -134,8 +135,8 @@ Rgb NaturalPaint::exitance(const PlacedHit& hit, const Vec3& direction, double p
     add_beam((1 - at.u - at.v) * p[0] + at.u * p[1] + at.v * p[2], at.normal, hit.facet, bits, irradiance.data());
   }
   const auto material = scene_.optics(at.place);
-  const Surface surface =
-      scene_.is_ground(at.place) ? Surface::soil : surface_[scene_.geometry().copies[at.place.copy].plant][at.place.shape];
+  const SurfaceKind surface =
+      scene_.is_ground(at.place) ? SurfaceKind::soil : surface_[scene_.geometry().copies[at.place.copy].plant][at.place.shape];
   return facet_colour(bands_, optics_[material], surface, irradiance.data(), at.front ? Side::front : Side::back);
 }
 
@@ -155,7 +156,7 @@ void NaturalPaint::prepare_open_ground() {
 Rgb NaturalPaint::open_ground(const Vec3& point, std::uint64_t bits) const {
   std::array<float, 6> irradiance = open_;
   if (!sun_.empty()) add_beam(point, {0, 0, 1}, no_placed_facet, bits, irradiance.data());
-  return facet_colour(bands_, optics_[scene_.geometry().ground_optics], Surface::soil, irradiance.data(), Side::front);
+  return facet_colour(bands_, optics_[scene_.geometry().ground_optics], SurfaceKind::soil, irradiance.data(), Side::front);
 }
 
 void NaturalPaint::add_beam(const Vec3& point, const Vec3& normal, std::size_t from, std::uint64_t bits, float* irradiance) const {

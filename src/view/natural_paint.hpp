@@ -46,11 +46,11 @@ class NaturalPaint {
   CornerFans fans_;
   std::vector<std::size_t> rows_;  ///< bands drawn: three or one
   SeenFacets seen_;
-  ColourBands bands_;                          ///< of rows_
-  std::vector<Optics> optics_;                 ///< of rows_
-  std::vector<std::vector<Surface>> surface_;  ///< [plants][shapes]
-  std::vector<float> rest_;                    ///< [seen][2][rows_] irradiance without the sun's mean share where its beam is traced
-  std::vector<float> sun_;                     ///< [rows_] on a plane that faces it; empty = not traced
+  ColourBands bands_;                              ///< of rows_
+  std::vector<Optics> optics_;                     ///< of rows_
+  std::vector<std::vector<SurfaceKind>> surface_;  ///< [plants][shapes]
+  std::vector<float> rest_;                        ///< [seen][2][rows_] irradiance without the sun's mean share where its beam is traced
+  std::vector<float> sun_;                         ///< [rows_] on a plane that faces it; empty = not traced
   Vec3 sun_direction_{0, 0, 1}, sun_u_{1, 0, 0}, sun_v_{0, 1, 0};
   double sun_radius_ = 0;
   bool ground_marked_ = false;

@@ -9,8 +9,8 @@
 
 namespace sunfleck {
 
-using raytree::Node;
-using raytree::Query;
+using raytree::TreeNode;
+using raytree::TreeQuery;
 
 struct PlacedRays::Impl {
   Impl(const DrawnScene& s, std::size_t written_out) : scene(s), tree(s, written_out) {

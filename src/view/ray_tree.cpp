@@ -19,8 +19,8 @@ Vec3 linear(const std::array<float, 12>& m, const Vec3& v) {
 }
 
 /// The same ray in the frame of a child; it keeps its parameter, so distances need no change.
-Query into(const Query& outer, const Child& child) {
-  Query inner = outer;
+TreeQuery into(const TreeQuery& outer, const Child& child) {
+  TreeQuery inner = outer;
   inner.node = child.node;
   const auto& m = child.to_local;
   inner.origin = linear(m, outer.origin) + Vec3{m[3], m[7], m[11]};
@@ -30,19 +30,19 @@ Query into(const Query& outer, const Child& child) {
 }
 
 /// What the ray met, after a query on its node.
-std::size_t facet_met(const Query& query, const RTCHit& hit) {
+std::size_t facet_met(const TreeQuery& query, const RTCHit& hit) {
   return hit.geomID == triangles_id ? static_cast<std::size_t>(query.base + query.node->facet(hit.primID)) : query.facet;
 }
 
 void bounds(const RTCBoundsFunctionArguments* a) {
-  *a->bounds_o = static_cast<const Node*>(a->geometryUserPtr)->child_bounds[a->primID];
+  *a->bounds_o = static_cast<const TreeNode*>(a->geometryUserPtr)->child_bounds[a->primID];
 }
 
 void intersect(const RTCIntersectFunctionNArguments* a) {
   if (a->valid[0] == 0) return;
-  auto& outer = *static_cast<Query*>(a->context);
+  auto& outer = *static_cast<TreeQuery*>(a->context);
   auto& ray = *reinterpret_cast<RTCRayHit*>(a->rayhit);  // one ray at a time: the layouts are the same
-  Query inner = into(outer, static_cast<const Node*>(a->geometryUserPtr)->children[a->primID]);
+  TreeQuery inner = into(outer, static_cast<const TreeNode*>(a->geometryUserPtr)->children[a->primID]);
   RTCRayHit found;
   if (!embree_meets(inner.node->scene.get(), inner, embree_ray(inner.origin, inner.direction, ray.ray.tnear, ray.ray.tfar), found)) return;
   outer.facet = facet_met(inner, found.hit);
@@ -54,14 +54,14 @@ void intersect(const RTCIntersectFunctionNArguments* a) {
 void occluded(const RTCOccludedFunctionNArguments* a) {
   if (a->valid[0] == 0) return;
   auto& ray = *reinterpret_cast<RTCRay*>(a->ray);
-  Query inner = into(*static_cast<Query*>(a->context), static_cast<const Node*>(a->geometryUserPtr)->children[a->primID]);
+  TreeQuery inner = into(*static_cast<TreeQuery*>(a->context), static_cast<const TreeNode*>(a->geometryUserPtr)->children[a->primID]);
   if (embree_occluded(inner.node->scene.get(), inner, embree_ray(inner.origin, inner.direction, ray.tnear, ray.tfar)))
     ray.tfar = -std::numeric_limits<float>::infinity();  // Embree's sign for it
 }
 
 /// Leaves out the facet on which the ray starts.
 void leave_start(const RTCFilterFunctionNArguments* a) {
-  const auto& q = *static_cast<const Query*>(a->context);
+  const auto& q = *static_cast<const TreeQuery*>(a->context);
   if (q.base + q.node->facet(RTCHitN_primID(a->hit, a->N, 0)) == q.start) a->valid[0] = 0;
 }
 
@@ -69,16 +69,16 @@ void leave_start(const RTCFilterFunctionNArguments* a) {
 
 Tree::Tree(const DrawnScene& scene, std::size_t written_out) {
   const auto& g = scene.geometry();
-  std::map<const Plant*, const Node*> models;
+  std::map<const Plant*, const TreeNode*> models;
   std::size_t facets = 0;
   for (const auto& entry : g.plants)
     if (models.try_emplace(entry.plant.get(), nullptr).second) facets += entry.shape_facet.back();
   for (const auto& entry : g.plants)
     if (auto& node = models[entry.plant.get()]; !node) node = plant_node(*entry.plant, facets <= written_out);
-  Node* ground = g.ground.triangles.empty() ? nullptr : mesh_node(g.ground, 0, g.ground.triangles.size());
+  TreeNode* ground = g.ground.triangles.empty() ? nullptr : mesh_node(g.ground, 0, g.ground.triangles.size());
   ground_ = ground, ground_first_ = g.plant_facets;
 
-  Node* world = new_node();
+  TreeNode* world = new_node();
   Box all;
   for (const auto& copy : g.copies) all.add(copy.map.point(models[g.plants[copy.plant].plant.get()]->middle));
   if (ground) all.add(ground->middle);
@@ -89,25 +89,25 @@ Tree::Tree(const DrawnScene& scene, std::size_t written_out) {
   world_ = world;
 }
 
-Node* Tree::new_node() {
-  return nodes_.emplace_back(std::make_unique<Node>()).get();
+TreeNode* Tree::new_node() {
+  return nodes_.emplace_back(std::make_unique<TreeNode>()).get();
 }
 
-Node* Tree::mesh_node(const Mesh& mesh, std::size_t first, std::size_t count) {
+TreeNode* Tree::mesh_node(const Mesh& mesh, std::size_t first, std::size_t count) {
   std::vector<Triangle> triangles;
   triangles.reserve(count);
   for (std::size_t t = first; t < first + count; ++t) triangles.push_back(mesh.corners(t));
-  Node* node = new_node();
+  TreeNode* node = new_node();
   set_triangles(*node, triangles);
   finish(*node);
   return node;
 }
 
-Node* Tree::plant_node(const Plant& plant, bool write_out) {
-  std::map<Piece, std::pair<std::size_t, Node*>> pieces;  // how often each is placed
+TreeNode* Tree::plant_node(const Plant& plant, bool write_out) {
+  std::map<Piece, std::pair<std::size_t, TreeNode*>> pieces;  // how often each is placed
   if (!write_out)
     for (const auto& s : plant.shapes) ++pieces[{s.mesh, s.first_triangle, s.triangle_count}].first;
-  Node* node = new_node();
+  TreeNode* node = new_node();
   std::vector<Triangle> own;
   std::uint32_t facet = 0;
   std::vector<std::pair<const Shape*, std::uint32_t>> placed;
@@ -139,7 +139,7 @@ Node* Tree::plant_node(const Plant& plant, bool write_out) {
   return node;
 }
 
-void Tree::set_triangles(Node& node, const std::vector<Triangle>& triangles) {
+void Tree::set_triangles(TreeNode& node, const std::vector<Triangle>& triangles) {
   node.scene = device_.new_scene(RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION);
   if (triangles.empty()) return;
   Box box;
@@ -155,7 +155,7 @@ void Tree::set_triangles(Node& node, const std::vector<Triangle>& triangles) {
   attached.attach(node.scene.get(), triangles_id);
 }
 
-void Tree::place(Node& parent, const Node& child, const Affine& map, std::uint64_t first) {
+void Tree::place(TreeNode& parent, const TreeNode& child, const Affine& map, std::uint64_t first) {
   if (child.box.empty()) return;
   const double determinant = glm::determinant(map.linear);
   const Mat3 back = glm::inverse(map.linear);
@@ -188,7 +188,7 @@ void Tree::place(Node& parent, const Node& child, const Affine& map, std::uint64
   parent.box.add(box);
 }
 
-void Tree::finish(Node& node) {
+void Tree::finish(TreeNode& node) {
   if (!node.scene) set_triangles(node, {});
   if (!node.children.empty()) {
     RTCGeometry geometry = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_USER);
@@ -208,9 +208,9 @@ void Tree::finish(Node& node) {
   node.children.shrink_to_fit();
 }
 
-PlacedHit Tree::trace(const Node* node, const Vec3& origin, const Vec3& direction, double from, double to, std::size_t start,
+PlacedHit Tree::trace(const TreeNode* node, const Vec3& origin, const Vec3& direction, double from, double to, std::size_t start,
                       bool any) const {
-  Query query{};
+  TreeQuery query{};
   rtcInitIntersectContext(&query);
   query.node = node;
   query.base = node == ground_ ? ground_first_ : 0;

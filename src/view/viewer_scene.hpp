@@ -44,7 +44,7 @@ struct ViewerMap {
 struct ViewerLight {
   FacetLight stored;
   ColourBands bands;
-  std::vector<std::vector<Surface>> surfaces;  ///< [material][organ type]
+  std::vector<std::vector<SurfaceKind>> surfaces;  ///< [material][organ type]
 };
 
 /// How far the default camera stands from its target [m]: the larger of `by_height` and `by_width` / (width / height of the picture).

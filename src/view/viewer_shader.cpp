@@ -109,7 +109,7 @@ void ViewerShader::expose() {
   for (std::size_t f = 0; f < n; f += step) {
     if (!(facets.area[f] > 0)) continue;
     const auto& surfaces = light_->surfaces[facets.optics[f]];
-    const Surface surface = f >= facets.plant_facets ? Surface::soil : surfaces[facets.organs.type[facets.organ[f]]];
+    const SurfaceKind surface = f >= facets.plant_facets ? SurfaceKind::soil : surfaces[facets.organs.type[facets.organ[f]]];
     luminances.push_back(luminance(
         facet_colour(light_->bands, facets.materials[facets.optics[f]], surface, &light_->stored.irradiance[2 * f * b], Side::front)));
   }
@@ -161,7 +161,7 @@ Rgb ViewerShader::natural(const RayHit& hit, const Vec3& direction, std::uint64_
   const auto& facets = scene_.scene();
   const std::size_t f = hit.facet, b = light_->stored.bands.size();
   const auto& surfaces = light_->surfaces[facets.optics[f]];
-  const Surface surface = f >= facets.plant_facets ? Surface::soil : surfaces[facets.organs.type[facets.organ[f]]];
+  const SurfaceKind surface = f >= facets.plant_facets ? SurfaceKind::soil : surfaces[facets.organs.type[facets.organ[f]]];
   return tone_map(facet_colour(light_->bands, facets.materials[facets.optics[f]], surface, &light_->stored.irradiance[2 * f * b],
                                hit.front ? Side::front : Side::back),
                   exposure_);

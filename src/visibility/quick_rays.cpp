@@ -14,13 +14,13 @@ namespace sunfleck {
 
 namespace {
 
-struct Query : RTCIntersectContext {
+struct StartSkip : RTCIntersectContext {
   std::uint32_t start;
 };
 
 void leave_start_out(const RTCFilterFunctionNArguments* a) {
   for (unsigned i = 0; i < a->N; ++i)
-    if (RTCHitN_primID(a->hit, a->N, i) == static_cast<const Query*>(a->context)->start) a->valid[i] = 0;
+    if (RTCHitN_primID(a->hit, a->N, i) == static_cast<const StartSkip*>(a->context)->start) a->valid[i] = 0;
 }
 
 }  // namespace
@@ -63,7 +63,7 @@ RayHit QuickRays::first_hit(const Vec3& origin, const Vec3& direction, std::uint
   const double begin = std::max(0.0, -glm::dot(p, direction) - impl_->size);
   if (begin > range) return hit;
   const Vec3 q = p + begin * direction;
-  Query query;
+  StartSkip query;
   rtcInitIntersectContext(&query);
   query.start = start;
   if (start != no_facet) query.filter = leave_start_out;

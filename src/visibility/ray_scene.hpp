@@ -18,17 +18,17 @@ namespace rayscene {
 inline constexpr double slack = 1e-6;  ///< how far parts of a ray overlap at borders, in units of the scene's size
 
 /// Which image of a cell or facet: moved by (x width, y depth).
-struct Image {
+struct CellImage {
   std::int32_t x = 0, y = 0;
-  friend bool operator==(const Image&, const Image&) = default;
-  friend Image operator-(const Image& a, const Image& b) { return {a.x - b.x, a.y - b.y}; }
+  friend bool operator==(const CellImage&, const CellImage&) = default;
+  friend CellImage operator-(const CellImage& a, const CellImage& b) { return {a.x - b.x, a.y - b.y}; }
 };
 
 /// A facet, seen from another of the same copy with which it is stacked.
 struct Neighbour {
   std::uint32_t facet;
-  Image image;    ///< relative to the other's
-  double height;  ///< above the other's front: the same side in every copy
+  CellImage image;  ///< relative to the other's
+  double height;    ///< above the other's front: the same side in every copy
 };
 using Stacks = std::unordered_map<std::uint32_t, std::vector<Neighbour>>;
 
@@ -36,7 +36,7 @@ using Stacks = std::unordered_map<std::uint32_t, std::vector<Neighbour>>;
 struct Query : RTCIntersectContext {
   const void* scene;
   CopyFacet start;
-  Image cell;
+  CellImage cell;
   const std::vector<Neighbour>* stack;  ///< of the start facet; null = none
 };
 
@@ -55,7 +55,7 @@ struct PlantRays {
 }  // namespace rayscene
 
 struct RayScene::Impl {
-  using Image = rayscene::Image;
+  using CellImage = rayscene::CellImage;
   using Neighbour = rayscene::Neighbour;
   using PlantRays = rayscene::PlantRays;
   using Query = rayscene::Query;
@@ -64,7 +64,7 @@ struct RayScene::Impl {
   Impl(const FacetScene* f, const FacetRows* r);
 
   Vec3 local(const Vec3& p) const { return (p - origin) * scale; }
-  Triangle local_corners(CopyFacet facet, Image image) const;
+  Triangle local_corners(CopyFacet facet, CellImage image) const;
   Triangle primitive_corners(std::size_t primitive) const;  ///< of an own primitive: where its image lies in the cell
   Triangle corners(CopyFacet f) const { return flat ? flat->corners[f.facet] : rows->corners(f); }
   /// Facets that are triangles of the scene itself: all, or those of the ground.
@@ -90,13 +90,13 @@ struct RayScene::Impl {
   /// A copy, or an image of it that reaches into the cell.
   struct Instance {
     std::uint32_t copy;
-    Image image;  ///< of the copy, that was moved into the cell
+    CellImage image;  ///< of the copy, that was moved into the cell
   };
   CopyFacet facet_at(unsigned instance, unsigned primitive) const {
     if (instance == RTC_INVALID_GEOMETRY_ID) return own(facet_of[primitive]);
     return {instances[instance].copy, plant_of(instances[instance].copy).facet(primitive)};
   }
-  Image image_at(unsigned instance, unsigned primitive) const {
+  CellImage image_at(unsigned instance, unsigned primitive) const {
     if (!periodic) return {};
     return instance == RTC_INVALID_GEOMETRY_ID ? image_of[primitive] : instances[instance].image;
   }
@@ -114,7 +114,7 @@ struct RayScene::Impl {
   double width = 0, depth = 0;          // of the cell, in local units; the cell begins at local (0, 0)
   Box box;                              // of the geometry, in local units
   std::vector<std::uint32_t> facet_of;  // per own primitive
-  std::vector<Image> image_of;          // per own primitive, periodic scenes only: the facet's image that was moved into the cell
+  std::vector<CellImage> image_of;      // per own primitive, periodic scenes only: the facet's image that was moved into the cell
   Stacks stacks;                        // of own facets
   std::size_t pairs = 0;
   EmbreeDevice device{EmbreeDevice::Trees::same_for_any_threads};

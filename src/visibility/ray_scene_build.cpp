@@ -32,7 +32,7 @@ bool positive_area(const Triangle& t) {
 }
 
 /// Keeps both facets of a pair; `height` is that of b above a along `up`. Counts pairs that are new.
-void add_stacked(Stacks& stacks, std::uint32_t a, const Triangle& corners_a, std::uint32_t b, const Triangle& corners_b, Image b_from_a,
+void add_stacked(Stacks& stacks, std::uint32_t a, const Triangle& corners_a, std::uint32_t b, const Triangle& corners_b, CellImage b_from_a,
                  double height, std::size_t& entries) {
   const Vec3 up = upward_normal(corners_a);
   const auto add = [&](std::uint32_t to, const Triangle& corners, const Neighbour& n) {
@@ -44,7 +44,7 @@ void add_stacked(Stacks& stacks, std::uint32_t a, const Triangle& corners_a, std
     ++entries;
   };
   add(a, corners_a, {b, b_from_a, height});
-  add(b, corners_b, {a, Image{} - b_from_a, -height});
+  add(b, corners_b, {a, CellImage{} - b_from_a, -height});
 }
 
 /// How far apart two cells may be of which one piece is said to reach into both: more is a mistake of units.
@@ -54,11 +54,11 @@ void check_reach(const Box& b, double width, double depth) {
 }
 
 /// The images whose box (local units) reaches into the cell: [low, high].
-std::pair<Image, Image> images_in_cell(const Box& b, double width, double depth) {
+std::pair<CellImage, CellImage> images_in_cell(const Box& b, double width, double depth) {
   check_reach(b, width, depth);
   const auto first = [](double x, double period) { return static_cast<std::int32_t>(std::floor(x / period)); };
   const auto last = [](double x, double period) { return static_cast<std::int32_t>(std::ceil(x / period)) - 1; };
-  const Image low{first(b.low.x, width), first(b.low.y, depth)};
+  const CellImage low{first(b.low.x, width), first(b.low.y, depth)};
   // What ends at a border does not reach into the next cell; one that lies in a border belongs to the cell it begins.
   return {low, {std::max(low.x, last(b.high.x, width)), std::max(low.y, last(b.high.y, depth))}};
 }
@@ -138,7 +138,7 @@ void RayScene::Impl::list_primitives() {
   const double most = std::min(1e7 + 32.0 * own_count, 4e9);  // a cell much smaller than the leaves is a mistake of units
   for (std::uint32_t f = 0; f < own_count; ++f) {
     if (!has_area(f)) continue;
-    std::pair<Image, Image> images;
+    std::pair<CellImage, CellImage> images;
     if (periodic) {
       Box b;
       for (const auto& p : corners(own(f))) b.add(local(p));
@@ -161,7 +161,7 @@ void RayScene::Impl::list_instances() {
   const double most = 1e6 + 64.0 * own_copy;
   for (std::uint32_t c = 0; rows && c < own_copy; ++c) {
     if (plant_of(c).box.empty()) continue;
-    std::pair<Image, Image> images;
+    std::pair<CellImage, CellImage> images;
     if (periodic) {
       const Box b = mapped(plant_of(c).box, rows->placed().copies[c].map);
       images = images_in_cell({local(b.low) - slack, local(b.high) + slack}, width, depth);
@@ -175,14 +175,14 @@ void RayScene::Impl::list_instances() {
   }
 }
 
-Triangle RayScene::Impl::local_corners(CopyFacet facet, Image image) const {
+Triangle RayScene::Impl::local_corners(CopyFacet facet, CellImage image) const {
   Triangle t = corners(facet);
   for (auto& p : t) p = local(p) + Vec3{image.x * width, image.y * depth, 0.0};
   return t;
 }
 
 Triangle RayScene::Impl::primitive_corners(std::size_t primitive) const {
-  const Image image = periodic ? image_of[primitive] : Image{};
+  const CellImage image = periodic ? image_of[primitive] : CellImage{};
   return local_corners(own(facet_of[primitive]), {-image.x, -image.y});
 }
 
@@ -191,7 +191,7 @@ void RayScene::Impl::find_stacks() {
     std::vector<StackCandidate> candidates(facet_of.size());
     for (std::uint32_t p = 0; p < facet_of.size(); ++p) candidates[p] = {primitive_corners(p), p, facet_of[p] >= flat->plant_facets};
     for (const auto& pair : find_stacked(candidates)) {
-      const Image relative = periodic ? image_of[pair.first] - image_of[pair.second] : Image{};
+      const CellImage relative = periodic ? image_of[pair.first] - image_of[pair.second] : CellImage{};
       add_stacked(stacks, facet_of[pair.first], candidates[pair.first].corners, facet_of[pair.second], candidates[pair.second].corners,
                   relative, pair.height, pairs);
     }

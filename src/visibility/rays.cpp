@@ -28,8 +28,8 @@ void RayScene::Impl::filter(const RTCFilterFunctionNArguments* a) {
   const auto primitive = RTCHitN_primID(a->hit, a->N, 0), instance = RTCHitN_instID(a->hit, a->N, 0, 0);
   const CopyFacet facet = self.facet_at(instance, primitive);
   if (facet.copy != query.start.copy || (facet.facet != query.start.facet && !query.stack)) return;
-  const Image image = self.periodic ? query.cell - self.image_at(instance, primitive) : Image{};
-  if (facet.facet == query.start.facet && image == Image{}) a->valid[0] = 0;
+  const CellImage image = self.periodic ? query.cell - self.image_at(instance, primitive) : CellImage{};
+  if (facet.facet == query.start.facet && image == CellImage{}) a->valid[0] = 0;
   if (query.stack)
     for (const auto& n : *query.stack)
       if (facet.facet == n.facet && image == n.image) a->valid[0] = 0;
@@ -98,7 +98,7 @@ RayHit RayScene::Impl::trace(Vec3 p, Vec3 d, CopyFacet start, double range) cons
         const Triangle t = local_corners(facet, {});
         const Vec3 point = t[0] + u * (t[1] - t[0]) + v * (t[2] - t[0]);
         first_in_stack(facet, point, d, false, first);
-        if (first.facet != facet.facet || first.image != Image{}) {
+        if (first.facet != facet.facet || first.image != CellImage{}) {
           barycentric(local_corners({facet.copy, first.facet}, first.image), point, u, v);
           hit.facet = first.facet;
         }

@@ -24,16 +24,16 @@ TEST_CASE("colour bands: red, green and blue by name, else PAR, else the first",
 }
 
 TEST_CASE("surfaces are guessed from optics first, then from the organ's type", "[view]") {
-  REQUIRE(surface_of("Metamer", "leaf") == Surface::leaf);
-  REQUIRE(surface_of("Metamer", "a") == Surface::bark);
-  REQUIRE(surface_of("ground", "ground") == Surface::soil);
-  REQUIRE(surface_of("", "linear") == Surface::leaf);
-  REQUIRE(surface_of("ear_2", "x") == Surface::ear);
-  REQUIRE(surface_of("stem", "wheat") == Surface::stem);
-  REQUIRE(surface_of("stem", "bark") == Surface::bark);
-  REQUIRE(surface_of("organ", "wall") == Surface::made);
-  REQUIRE(surface_of("pot_3", "x") == Surface::made);
-  REQUIRE(surface_of("leaf", "white leaf") == Surface::leaf);
+  REQUIRE(surface_of("Metamer", "leaf") == SurfaceKind::leaf);
+  REQUIRE(surface_of("Metamer", "a") == SurfaceKind::bark);
+  REQUIRE(surface_of("ground", "ground") == SurfaceKind::soil);
+  REQUIRE(surface_of("", "linear") == SurfaceKind::leaf);
+  REQUIRE(surface_of("ear_2", "x") == SurfaceKind::ear);
+  REQUIRE(surface_of("stem", "wheat") == SurfaceKind::stem);
+  REQUIRE(surface_of("stem", "bark") == SurfaceKind::bark);
+  REQUIRE(surface_of("organ", "wall") == SurfaceKind::made);
+  REQUIRE(surface_of("pot_3", "x") == SurfaceKind::made);
+  REQUIRE(surface_of("leaf", "white leaf") == SurfaceKind::leaf);
 }
 
 TEST_CASE("facet colour is the light that leaves the side", "[view]") {
@@ -41,22 +41,23 @@ TEST_CASE("facet colour is the light that leaves the side", "[view]") {
   const float irradiance[] = {100, 200, 300, 10, 20, 30};
   const ColourBands bands{{2, 1, 0}, true};
   // Float arithmetic of a few operations: 1e-5 relative.
-  const Rgb front = facet_colour(bands, optics, Surface::leaf, irradiance, Side::front);
+  const Rgb front = facet_colour(bands, optics, SurfaceKind::leaf, irradiance, Side::front);
   REQUIRE(front.r == Approx(0.2 * 300 + 0.1 * 30).epsilon(1e-5));
   REQUIRE(front.g == Approx(0.4 * 200 + 0.3 * 20).epsilon(1e-5));
   REQUIRE(front.b == Approx(0.1 * 100 + 0.05 * 10).epsilon(1e-5));
-  const Rgb back = facet_colour(bands, optics, Surface::leaf, irradiance, Side::back);
+  const Rgb back = facet_colour(bands, optics, SurfaceKind::leaf, irradiance, Side::back);
   REQUIRE(back.b == Approx(0.2 * 10 + 0.05 * 100).epsilon(1e-5));
 }
 
 TEST_CASE("a guessed hue keeps the band's power: the channels' mean is the exitance", "[view]") {
   const Optics optics{"x", {0.1f}, {0.2f}, {0.05f}};
   const float irradiance[] = {100, 10};
-  for (const auto surface : {Surface::leaf, Surface::stem, Surface::bark, Surface::ear, Surface::flower, Surface::soil, Surface::made}) {
+  for (const auto surface : {SurfaceKind::leaf, SurfaceKind::stem, SurfaceKind::bark, SurfaceKind::ear, SurfaceKind::flower,
+                             SurfaceKind::soil, SurfaceKind::made}) {
     const Rgb c = facet_colour({}, optics, surface, irradiance, Side::front);
     REQUIRE((c.r + c.g + c.b) / 3 == Approx(0.1 * 100 + 0.05 * 10).epsilon(1e-5));  // tints are written with two decimals, mean exactly 1
   }
-  const Rgb leaf = facet_colour({}, optics, Surface::leaf, irradiance, Side::front);
+  const Rgb leaf = facet_colour({}, optics, SurfaceKind::leaf, irradiance, Side::front);
   REQUIRE(leaf.g > leaf.r);
   REQUIRE(leaf.r > leaf.b);
 }

@@ -26,11 +26,11 @@ Rgb8 encode_srgb(const Rgb& linear);
 Rgb decode_srgb(const Rgb8& encoded);
 
 /// What a facet is made of, as far as its hue must be guessed.
-enum class Surface : std::uint8_t { leaf, stem, bark, ear, flower, soil, made };
+enum class SurfaceKind : std::uint8_t { leaf, stem, bark, ear, flower, soil, made };
 /// Guessed from the words in an organ's type and in the name of its optics, ignoring case: "ground" or "soil"; "stem", "culm", "sheath",
 /// ... (green stems); "trunk", "bark", "branch", "metamer", ...; "ear", "spike", "fruit", ...; "flower", "petal", ...; what people make
 /// ("wall", "panel", "housing", "door", "pot", "white", ...) is grey; everything else is leaf. The optics decide where both name something.
-Surface surface_of(std::string_view organ_type, std::string_view optics_name);
+SurfaceKind surface_of(std::string_view organ_type, std::string_view optics_name);
 
 /// Which bands make red, green and blue.
 struct ColourBands {
@@ -46,7 +46,7 @@ enum class Side : std::uint8_t { front, back };
 /// `irradiance` is [2][b], front then back, with b = number of bands of `optics`. Where the bands are not red, green and blue, the one
 /// band's B_f is spread over the channels by the spectrum of a typical surface of its kind (mean of the channels = 1, reflected and
 /// transmitted light apart: light through a leaf is yellower). A mesh with one colour a facet takes the mean of both sides.
-Rgb facet_colour(const ColourBands& bands, const Optics& optics, Surface surface, const float* irradiance, Side side);
+Rgb facet_colour(const ColourBands& bands, const Optics& optics, SurfaceKind surface, const float* irradiance, Side side);
 
 /// Luminance scale of a picture. Global operator of Reinhard et al. 2002, eq. 4 (doi:10.1145/566654.566575), applied to
 /// luminance so that hues stay.

@@ -24,10 +24,10 @@ struct RayEnd {
 };
 
 /// Rays through a scene of members.
-class Surroundings {
+class MemberSurroundings {
  public:
   /// Both must outlive it.
-  Surroundings(const Members& members, const PlacedScene& placed);
+  MemberSurroundings(const Members& members, const PlacedScene& placed);
 
   /// From a point of member `m`, given in its original's surface coordinates, along the world direction `d`.
   RayEnd look(std::uint32_t m, const std::array<float, 3>& point, const Vec3& d) const;

@@ -1,11 +1,11 @@
-#include "instantiation/surroundings.hpp"
+#include "instantiation/member_surroundings.hpp"
 
 #include <algorithm>
 #include <limits>
 
 namespace sunfleck {
 
-Surroundings::Surroundings(const Members& members, const PlacedScene& placed)
+MemberSurroundings::MemberSurroundings(const Members& members, const PlacedScene& placed)
     : members_(members), scene_(members.copies), maps_(members.maps), placed_(placed), rays_(members.copies) {
   Box extent;
   double organ = std::numeric_limits<double>::max();
@@ -21,7 +21,7 @@ Surroundings::Surroundings(const Members& members, const PlacedScene& placed)
   skip_ = std::max(2e-6 * std::max({size.x, size.y, size.z}), maps_.empty() ? 0.0 : 1e-3 * organ);
 }
 
-RayEnd Surroundings::end_of(const CopyHit& hit, const Vec3& d) const {
+RayEnd MemberSurroundings::end_of(const CopyHit& hit, const Vec3& d) const {
   RayEnd end;
   if (hit.kind == CopyHit::Kind::nothing) return end;
   if (hit.kind == CopyHit::Kind::ground) {
@@ -37,7 +37,7 @@ RayEnd Surroundings::end_of(const CopyHit& hit, const Vec3& d) const {
 }
 
 /// The part of the near ground that stands for a point of the far one: the near field is laid out again and again.
-std::uint32_t Surroundings::near_facet(const Vec3& point) const {
+std::uint32_t MemberSurroundings::near_facet(const Vec3& point) const {
   const auto& field = placed_.near_field;
   double x = (point.x - field[0]) / (field[2] - field[0]), y = (point.y - field[1]) / (field[3] - field[1]);
   x = (x - std::floor(x)) * placed_.near_cells[0];
@@ -49,13 +49,13 @@ std::uint32_t Surroundings::near_facet(const Vec3& point) const {
   return triangle * parts + std::min(static_cast<std::uint32_t>((x - i) * parts), parts - 1);
 }
 
-RayEnd Surroundings::look(std::uint32_t m, const std::array<float, 3>& point, const Vec3& d) const {
+RayEnd MemberSurroundings::look(std::uint32_t m, const std::array<float, 3>& point, const Vec3& d) const {
   const auto& surface = members_.original_of(m).elements.surface;
   const Vec3 from = maps_[m].point(surface.origin + Vec3{point[0], point[1], point[2]});
   return end_of(rays_.first_hit(from, d, skip_), d);
 }
 
-std::uint32_t Surroundings::stands_between(std::uint32_t m, const std::array<float, 6>& segment) const {
+std::uint32_t MemberSurroundings::stands_between(std::uint32_t m, const std::array<float, 6>& segment) const {
   const auto& surface = members_.original_of(m).elements.surface;
   const Vec3 a = maps_[m].point(surface.origin + Vec3{segment[0], segment[1], segment[2]});
   const Vec3 b = maps_[m].point(surface.origin + Vec3{segment[3], segment[4], segment[5]});
@@ -72,11 +72,11 @@ std::uint32_t Surroundings::stands_between(std::uint32_t m, const std::array<flo
   return glm::length(beside) * maps_[m].scale < 4 * skip_ ? none : m;
 }
 
-RayEnd Surroundings::look_from_ground(const Vec3& point, const Vec3& d) const {
+RayEnd MemberSurroundings::look_from_ground(const Vec3& point, const Vec3& d) const {
   return end_of(rays_.first_hit(point, d, skip_), d);
 }
 
-bool Surroundings::hidden(const Vec3& point, const Vec3& d) const {
+bool MemberSurroundings::hidden(const Vec3& point, const Vec3& d) const {
   return rays_.occluded(point, d, skip_, std::numeric_limits<double>::infinity());
 }
 
