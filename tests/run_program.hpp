@@ -14,6 +14,7 @@ struct ProgramFate {
   std::string stop_at;         ///< not empty: sends it `signal` once standard error holds this text
   int signal = 15;             ///< SIGTERM
   std::size_t disk_bytes = 0;  ///< > 0: no file may grow beyond this, as on a full disk
+  bool no_threads = false;     ///< each thread that it wants is refused, as where the system has no more
   std::string out, err;        ///< not empty: a file that takes the place of standard output or error, such as /dev/full; "closed"
 };
 

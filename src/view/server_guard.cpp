@@ -76,9 +76,9 @@ Verdict judge(const GuardedRequest& request, const GuardRule& rule) {
   if (!request.origin.empty() && lower(request.origin) != "http://" + lower(request.host) &&
       lower(request.origin) != "https://" + lower(request.host))
     return Verdict::foreign_origin;
-  const bool link = request.fetch_mode == "navigate";
-  if (!link && !request.fetch_site.empty() && request.fetch_site != "same-origin" && request.fetch_site != "none")
-    return Verdict::foreign_origin;
+  if (!request.fetch_site.empty() && request.fetch_site != "same-origin" && request.fetch_site != "none") return Verdict::foreign_origin;
+  for (const char* frame : {"iframe", "frame", "fencedframe", "embed", "object"})
+    if (request.fetch_dest == frame) return Verdict::foreign_origin;
   if (!rule.token) return Verdict::allowed;
   if (cookie_holds(request.cookie, *rule.token)) return Verdict::allowed;
   constexpr std::string_view bearer = "Bearer ";

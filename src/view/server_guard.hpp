@@ -12,7 +12,7 @@ struct GuardedRequest {
   std::string host;           ///< Host
   std::string origin;         ///< Origin
   std::string fetch_site;     ///< Sec-Fetch-Site
-  std::string fetch_mode;     ///< Sec-Fetch-Mode
+  std::string fetch_dest;     ///< Sec-Fetch-Dest
   std::string cookie;         ///< Cookie
   std::string authorization;  ///< Authorization
   std::string token;          ///< ?token= of the address
@@ -31,8 +31,9 @@ enum class Verdict {
   no_token
 };
 
-/// The checks, in this order: Host, then Origin and Sec-Fetch-Site (a page of another origin may link here, but neither read nor
-/// embed), then the token, compared in a time that does not depend on where it differs.
+/// The checks, in this order: Host; then Origin, Sec-Fetch-Site and Sec-Fetch-Dest (a page of another origin, be it of another port of
+/// this machine, may neither read, embed nor link here, and nothing is answered into a frame); then the token, compared in a time that
+/// does not depend on where it differs.
 Verdict judge(const GuardedRequest& request, const GuardRule& rule);
 
 /// True for localhost, *.localhost, 127.x.y.z and [::1], each with or without a port (any port: tunnels change it).

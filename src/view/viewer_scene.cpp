@@ -22,6 +22,13 @@ namespace {
 
 constexpr std::size_t maps_kept = 12, lights_kept = 3;
 
+/// In the background; where the system gives no thread, by whoever asks for it first.
+constexpr auto where_threads_last = std::launch::async | std::launch::deferred;
+
+bool is_deferred(const auto& future) {
+  return future.wait_for(std::chrono::seconds(0)) == std::future_status::deferred;
+}
+
 /// HDF5 knows one thread only, whatever the file.
 std::mutex& hdf5() {
   static std::mutex mutex;
@@ -96,7 +103,7 @@ void check_viewer_memory(const std::string& file, std::size_t facets, std::size_
                     static_cast<double>(available) / gibibyte));
 }
 
-ViewerScene::ViewerScene(const std::string& file) : file_(file) {
+ViewerScene::ViewerScene(const std::string& file, Progress& stopping) : file_(file), stopping_(stopping) {
   bool copies = false;  // most facets are
   {
     const std::lock_guard lock(hdf5());
@@ -108,12 +115,15 @@ ViewerScene::ViewerScene(const std::string& file) : file_(file) {
     const std::size_t distinct = distinct_facets(*result_);
     check_viewer_memory(file, facets, distinct, available_bytes() / 4 * 3);
     copies = 2 * distinct <= facets;
+    stopping_.check();
     scene_ = stored_scene(*result_);
+    stopping_.check();
     organ_area_ = result_->rows<float>("organs/area", 0, scene_.organs.size());
     for (const auto& name : quantity_names())
       if (is_kept(*result_, name)) quantities_.push_back(name);
     if (copies) drawn_ = std::make_unique<DrawnScene>(*result_);
   }
+  stopping_.check();
   const std::size_t n = scene_.size(), m = scene_.organs.size();
   const auto first_tree = [&] {
     if (copies)
@@ -134,8 +144,9 @@ ViewerScene::ViewerScene(const std::string& file) : file_(file) {
 
 void ViewerScene::build_exact() const {
   std::call_once(begun_, [this] {
-    building_ = std::async(std::launch::async, [this] {
+    building_ = std::async(where_threads_last, [this] {
                   if (exact_ready_) return;
+                  stopping_.check();
                   {
                     const std::lock_guard lock(hdf5());
                     drawn_ = std::make_unique<DrawnScene>(*result_);
@@ -143,12 +154,14 @@ void ViewerScene::build_exact() const {
                   rays_ = std::make_unique<PlacedRays>(*drawn_);
                   exact_ready_ = true;
                 }).share();
+    if (is_deferred(building_)) building_.wait();
   });
 }
 
 ViewerScene::~ViewerScene() {
   if (building_.valid()) building_.wait();
-  for (auto& [state, natural] : naturals_) natural.wait();
+  for (auto& [state, natural] : naturals_)
+    if (!is_deferred(natural)) natural.wait();
   const std::lock_guard lock(hdf5());
   result_.reset();
 }
@@ -224,14 +237,13 @@ struct HeldPaint {
 };
 
 std::shared_ptr<const NaturalPaint> paint_of(const DrawnScene& scene, const PlacedRays& rays, std::shared_ptr<const ViewerLight> light,
-                                             bool open_ground) {
+                                             bool open_ground, Progress& stopping) {
   auto held = std::make_shared<HeldPaint>();
   held->light = std::move(light);
   held->source = light_source(held->light->stored, scene.size());
   held->paint.emplace(scene, rays, held->source, std::numeric_limits<std::size_t>::max());
   if (open_ground) held->paint->mark_ground();
-  Progress silent;
-  held->paint->read(silent);
+  held->paint->read(stopping);
   return {held, &*held->paint};
 }
 
@@ -246,18 +258,18 @@ std::shared_ptr<const NaturalPaint> ViewerScene::natural(std::size_t state, bool
     const std::lock_guard lock(reading_);
     auto& slot = naturals_[state];
     if (!slot.valid()) {
-      slot = std::async(std::launch::async, [this, stored] {
+      slot = std::async(where_threads_last, [this, stored] {
                building_.get();
-               return paint_of(*drawn_, *rays_, stored, !scene_.periodic && scene_.plant_facets < scene_.size());
+               return paint_of(*drawn_, *rays_, stored, !scene_.periodic && scene_.plant_facets < scene_.size(), stopping_);
              }).share();
       for (auto old = naturals_.begin(); naturals_.size() > lights_kept && old != naturals_.end();) {
-        const bool done = old->second.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+        const bool done = old->second.wait_for(std::chrono::seconds(0)) != std::future_status::timeout;
         old = old->first != state && done ? naturals_.erase(old) : std::next(old);
       }
     }
     future = naturals_[state];
   }
-  if (!wait && future.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return nullptr;
+  if (!wait && future.wait_for(std::chrono::seconds(0)) == std::future_status::timeout) return nullptr;
   return future.get();
 }
 

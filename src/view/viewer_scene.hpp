@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include <sunfleck/core/progress.hpp>
 #include <sunfleck/result/result_reader.hpp>
 #include <sunfleck/view/picture.hpp>
 #include <sunfleck/view/stored.hpp>
@@ -58,8 +59,9 @@ struct Framing {
 class ViewerScene {
  public:
   /// Reads what the first picture needs; the exact ray tree is then built in the background, unless most facets are copies: then it is
-  /// there at once. Throws what Result throws; InputError where memory does not suffice.
-  explicit ViewerScene(const std::string& file);
+  /// there at once. Throws what Result throws; InputError where memory does not suffice; Stopped when `stopping`, which must outlive it,
+  /// is cancelled.
+  explicit ViewerScene(const std::string& file, Progress& stopping = silent());
   ~ViewerScene();
   ViewerScene(const ViewerScene&) = delete;
   ViewerScene& operator=(const ViewerScene&) = delete;
@@ -101,6 +103,7 @@ class ViewerScene {
   void build_exact() const;
 
   std::string file_;
+  Progress& stopping_;
   FileStamp stamp_;
   std::unique_ptr<Result> result_;
   FacetScene scene_;

@@ -51,7 +51,7 @@ Answer file_answer(const WebFile& file) {
 
 void ViewerService::load() {
   ViewerScenes loaded;
-  for (const auto& file : files_) loaded.push_back(std::make_shared<const ViewerScene>(file));
+  for (const auto& file : files_) loaded.push_back(std::make_shared<const ViewerScene>(file, stopping_));
   const std::lock_guard lock(mutex_);
   scenes_ = std::move(loaded);
   ++generation_;
@@ -64,7 +64,7 @@ bool ViewerService::reload(std::string& problem) {
   try {
     for (auto& scene : now) {
       if (const auto stamp = file_stamp(scene->file()); stamp == scene->stamp()) continue;
-      scene = std::make_shared<const ViewerScene>(scene->file());
+      scene = std::make_shared<const ViewerScene>(scene->file(), stopping_);
       changed = true;
     }
   } catch (const std::exception& error) {
@@ -101,7 +101,7 @@ Answer ViewerService::status() const {
 std::function<bool()> ViewerService::turn_over(const Parameters& parameters) {
   const auto name = parameters("client");
   const std::uint64_t turn = read_count(parameters, "turn", 0, 0, std::size_t{1} << 53);
-  if (!name) return [] { return false; };
+  if (!name) return [this] { return stopping_.cancelled(); };
   if (name->size() > 64) throw UsageError("client: found a long name; expected at most 64 letters");
   std::shared_ptr<std::atomic<std::uint64_t>> latest;
   {
@@ -117,7 +117,7 @@ std::function<bool()> ViewerService::turn_over(const Parameters& parameters) {
   }
   for (std::uint64_t seen = *latest; seen < turn && !latest->compare_exchange_weak(seen, turn);) {
   }
-  return [latest, turn] { return *latest > turn; };
+  return [this, latest, turn] { return *latest > turn || stopping_.cancelled(); };
 }
 
 Answer ViewerService::frame(const ViewerScenes& open, const Parameters& parameters) {

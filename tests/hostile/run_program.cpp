@@ -48,6 +48,11 @@ ProgramRun run_sunfleck(const std::vector<std::string>& arguments, const Program
       const rlimit limit{fate.disk_bytes, fate.disk_bytes};
       setrlimit(RLIMIT_FSIZE, &limit);
     }
+    if (fate.no_threads) {  // their stacks do not fit into what it may have
+      const rlimit stack{rlim_t{8} << 30, RLIM_INFINITY}, all{rlim_t{4} << 30, RLIM_INFINITY};
+      setrlimit(RLIMIT_STACK, &stack);
+      setrlimit(RLIMIT_AS, &all);
+    }
     execv(SUNFLECK_PROGRAM, argv.data());
     _exit(127);
   }

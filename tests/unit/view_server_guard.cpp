@@ -42,13 +42,21 @@ TEST_CASE("foreign hosts and pages are told apart from our own", "[view][server]
   }
 
   r = from("localhost:8600");
-  for (const char* site : {"cross-site", "same-site"}) {  // <img> of another page sends no Origin
-    r.fetch_site = site, r.fetch_mode = "no-cors";
-    CHECK(judge(r, rule) == Verdict::foreign_origin);
-    r.fetch_mode = "navigate";  // a link to the page is harmless: framing and reading are refused by its headers
-    CHECK(judge(r, rule) == Verdict::allowed);
+  for (const char* site : {"cross-site", "same-site"}) {  // <img>, a frame or a link of another page sends no Origin
+    r.fetch_site = site;
+    for (const char* dest : {"", "image", "document", "iframe"}) {
+      r.fetch_dest = dest;
+      CHECK(judge(r, rule) == Verdict::foreign_origin);
+    }
   }
-  r.fetch_site = "same-origin", r.fetch_mode = "cors";
+  r.fetch_site = "same-origin";
+  for (const char* frame : {"iframe", "frame", "fencedframe", "embed", "object"}) {
+    r.fetch_dest = frame;
+    CHECK(judge(r, rule) == Verdict::foreign_origin);
+  }
+  r.fetch_dest = "empty";
+  CHECK(judge(r, rule) == Verdict::allowed);
+  r.fetch_site = "none", r.fetch_dest = "document";  // typed, or a bookmark
   CHECK(judge(r, rule) == Verdict::allowed);
 }
 
