@@ -15,7 +15,11 @@ struct ProgramFate {
   int signal = 15;             ///< SIGTERM
   std::size_t disk_bytes = 0;  ///< > 0: no file may grow beyond this, as on a full disk
   bool no_threads = false;     ///< each thread that it wants is refused, as where the system has no more
-  std::string out, err;        ///< not empty: a file that takes the place of standard output or error, such as /dev/full; "closed"
+  std::string out, err;        ///< not empty: a file that takes the place of standard output or error, such as /dev/full; "closed";
+                               ///< "broken pipe": a pipe that nobody reads
+  int ignored_signal = 0;      ///< > 0: a signal that it finds ignored, as under nohup
+  unsigned seconds = 0;        ///< > 0: SIGALRM ends it after so long, if it has not ended
+  std::vector<std::string> environment;  ///< "NAME=value", beside what is there
 };
 
 /// Runs build/.../sunfleck with the arguments given.

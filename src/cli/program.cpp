@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include <sunfleck/core/error.hpp>
+#include <sunfleck/core/input_file.hpp>
 #include <sunfleck/core/names.hpp>
 #include <sunfleck/core/version.hpp>
 
@@ -139,6 +140,7 @@ class Program {
 
 int guarded(int argc, char** argv) {
   try {
+    const InputRecord what_is_read;
     return Program().run(argc, argv);
   } catch (const InputError& error) {
     tell(fmt::format("sunfleck: {}\n", error.what()));

@@ -14,6 +14,7 @@ void prepare_streams() {
     if (fcntl(descriptor, F_GETFD) < 0)  // open() takes the lowest that is free: this one
       if (open("/dev/null", descriptor == STDIN_FILENO ? O_WRONLY : O_RDONLY) < 0) return;
   std::signal(SIGXFSZ, SIG_IGN);
+  std::signal(SIGPIPE, SIG_IGN);
 }
 
 void tell(std::string_view text) {

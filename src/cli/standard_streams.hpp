@@ -6,7 +6,8 @@
 namespace sunfleck {
 
 /// Opens what of descriptors 0 to 2 is closed, so that no file of ours becomes one of them and is written into, in a way that lets writing
-/// fail. A file that grows too large for the user's limit is then an error of its writer, no signal.
+/// fail. A file that grows too large for the user's limit, or a pipe that nobody reads any more, is then an error of its
+/// writer, no signal.
 void prepare_streams();
 
 /// Writes to standard error at once. What cannot be written is lost: a message is no reason to give up the work.

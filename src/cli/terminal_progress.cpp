@@ -28,6 +28,9 @@ extern "C" void ask_to_stop(int) {
 
 void on_signal(int signal) {
   struct sigaction action {};
+  // ignored since before we began (nohup, a job in the background): stays so
+  if (sigaction(signal, nullptr, &action) == 0 && action.sa_handler == SIG_IGN) return;
+  action = {};
   action.sa_handler = ask_to_stop;
   action.sa_flags = static_cast<int>(SA_RESETHAND | SA_RESTART);  // the second one meets the default action and kills
   sigemptyset(&action.sa_mask);
@@ -46,6 +49,7 @@ constexpr std::chrono::milliseconds redraw_interval{500};
 TerminalProgress::TerminalProgress() : terminal_(isatty(STDERR_FILENO) == 1) {
   on_signal(SIGINT);
   on_signal(SIGTERM);
+  on_signal(SIGHUP);
 }
 
 TerminalProgress::~TerminalProgress() {

@@ -9,7 +9,8 @@
 
 namespace sunfleck {
 
-/// From construction on SIGINT and SIGTERM ask for an orderly stop (cancelled() turns true); a second signal kills at once.
+/// From construction on SIGINT, SIGTERM and SIGHUP, unless they were ignored, ask for an orderly stop (cancelled() turns true); a second
+/// signal of the kind kills at once.
 class TerminalProgress : public Progress {
  public:
   TerminalProgress();

@@ -14,6 +14,7 @@
 #include <sunfleck/view/stored.hpp>
 
 #include "cli/output_path.hpp"
+#include "cli/result_inputs.hpp"
 #include "cli/text_units.hpp"
 
 namespace sunfleck {
@@ -49,6 +50,8 @@ int verb_export(const ExportOptions& options, Progress& progress) {
   if (options.original) inputs.push_back(*options.original);
   check_output_path(options.output, suffixes, inputs);
   const Result result(options.result);
+  note_inputs_of(result);
+  prepare_outputs({options.output}, progress);
   std::string suffix = std::filesystem::path(options.output).extension().string();
   std::transform(suffix.begin(), suffix.end(), suffix.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   if (suffix == ".csv") {

@@ -14,6 +14,7 @@ namespace sunfleck {
 int verb_generate(const GenerateOptions& options, Progress& progress) {
   check_output_path(options.output, {".h5", ".obj"}, {options.species});
   const Species species = read_species(options.species);
+  prepare_outputs({options.output}, progress);
   const double age = options.age.value_or(species.age);
   const std::uint64_t seed = options.seed.value_or(species.seed);
   progress.line(fmt::format("growing {} to {} {}, seed {}", species.name, age, species.age_unit, seed));

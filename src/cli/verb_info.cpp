@@ -4,13 +4,14 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
-#include <fstream>
+#include <sstream>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include <sunfleck/core/error.hpp>
+#include <sunfleck/core/input_file.hpp>
 #include <sunfleck/format/read_plant.hpp>
 #include <sunfleck/format/scene_toml.hpp>
 #include <sunfleck/format/species_toml.hpp>
@@ -98,7 +99,7 @@ void scene_info(const std::string& file, bool json) {
 
 /// A species names the program that grows it; a scene does not.
 bool is_species(const std::string& file) {
-  std::ifstream in(file);
+  std::istringstream in(read_input_file(file));
   for (std::string line; std::getline(in, line) && line.rfind('[', 0) != 0;)
     if (line.rfind("program", 0) == 0) return true;
   return false;

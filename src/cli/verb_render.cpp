@@ -13,6 +13,7 @@
 #include <sunfleck/view/stored.hpp>
 
 #include "cli/output_path.hpp"
+#include "cli/result_inputs.hpp"
 
 namespace sunfleck {
 
@@ -99,6 +100,8 @@ int verb_render(const RenderOptions& options, Progress& progress) {
   const std::string quantity = options.quantity.value_or("colour");
   std::optional<Result> reference;
   if (options.reference) reference.emplace(*options.reference);
+  note_inputs_of(result);
+  prepare_outputs({options.output}, progress);
   const DrawnScene scene(result, options.ground);
   if (settings.infinite && !scene.geometry().periodic) progress.line("note: --infinite: the scene is not periodic; it is drawn as it is");
 

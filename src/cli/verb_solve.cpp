@@ -153,6 +153,9 @@ int verb_solve(const SolveOptions& options, Progress& progress) {
   }
 
   Scene scene = read_scene(options.scene);
+  std::vector<std::string> outputs{options.result};
+  if (options.picture) outputs.push_back(*options.picture);
+  prepare_outputs(outputs, progress);
   if (!options.only.empty()) scene.solve.only = options.only;
   if (options.stop_at) scene.solve.stop_at = stop_from_text(*options.stop_at);
   std::optional<Refinement> refinement;
@@ -241,13 +244,12 @@ int verb_solve(const SolveOptions& options, Progress& progress) {
   writer->finish(report, certificate ? &*certificate : nullptr);
   add_seconds(report.timings, "finish the file", finishing.seconds());
 
+  if (image) write_png(*image, *options.picture);  // before the table, which a closed pipe may end
+
   print_solve_table(scene, report, certificate ? &*certificate : nullptr);
   say_timings(report, placed.facets, total.seconds(), progress);
   progress.line("wrote " + options.result);
-  if (image) {
-    write_png(*image, *options.picture);
-    progress.line("wrote " + *options.picture);
-  }
+  if (image) progress.line("wrote " + *options.picture);
   if (report.status == SolveStatus::converged) return 0;
   if (solve_converged)
     say_not_reached(scene, *choice.fineness, *refinement, *certificate, progress);

@@ -13,6 +13,7 @@
 #include <format/organs.hpp>
 #include <format/text.hpp>
 #include <sunfleck/core/error.hpp>
+#include <sunfleck/core/input_file.hpp>
 #include <sunfleck/plant/build.hpp>
 
 namespace sunfleck {
@@ -123,6 +124,7 @@ class ObjReader {
     const auto relative = path.lexically_normal();
     if (path.is_absolute() || (!relative.empty() && *relative.begin() == ".."))
       throw InputError(location(file_, number_, "mtllib"), in_quotes(name), "a file in the folder of the OBJ or below");
+    InputRecord::note((std::filesystem::path(file_).parent_path() / path).string());
   }
 
   void build() {

@@ -1,12 +1,7 @@
 #include <sunfleck/format/read_plant.hpp>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
 #include <variant>
-
-#include <unistd.h>
 
 #include <fmt/format.h>
 
@@ -14,6 +9,8 @@
 #include <format/text.hpp>
 #include <sunfleck/core/error.hpp>
 #include <sunfleck/core/h5.hpp>
+#include <sunfleck/core/h5_whole.hpp>
+#include <sunfleck/core/replaced_file.hpp>
 
 namespace sunfleck {
 
@@ -27,7 +24,7 @@ class PlantPacker {
   std::string pack(const Plant& plant) {
     const h5::Id access(H5Pcreate(H5P_FILE_ACCESS));
     // The oldest layout: its superblock has no checksum, which an image of newer ones has stale (HDF5 1.10.8, H5Fget_file_image).
-    H5Pset_fapl_core(access.get(), std::size_t{1} << 20, false);
+    check(H5Pset_fapl_core(access.get(), std::size_t{1} << 20, false));
     file_ = h5::Id(H5Fcreate("plant", H5F_ACC_TRUNC, H5P_DEFAULT, access.get()));
     check(file_ ? 0 : -1);
     write_attributes(plant);
@@ -49,15 +46,15 @@ class PlantPacker {
 
   void write_raw(const std::string& path, hid_t type, const void* data, const std::vector<hsize_t>& size, hsize_t bytes_per_row) {
     const h5::Id links(H5Pcreate(H5P_LINK_CREATE));
-    H5Pset_create_intermediate_group(links.get(), 1);
+    check(H5Pset_create_intermediate_group(links.get(), 1));
     const h5::Id creation(H5Pcreate(H5P_DATASET_CREATE));
-    H5Pset_obj_track_times(creation.get(), false);                          // the same plant gives the same bytes
+    check(H5Pset_obj_track_times(creation.get(), false));                   // the same plant gives the same bytes
     if (constexpr hsize_t small = 4096; size[0] * bytes_per_row > small) {  // below, chunks cost more than they save
       std::vector<hsize_t> chunk = size;
       chunk[0] = std::clamp<hsize_t>((hsize_t{1} << 20) / std::max<hsize_t>(bytes_per_row, 1), 1, size[0]);
-      H5Pset_chunk(creation.get(), static_cast<int>(chunk.size()), chunk.data());
-      H5Pset_shuffle(creation.get());
-      H5Pset_deflate(creation.get(), 4);
+      check(H5Pset_chunk(creation.get(), static_cast<int>(chunk.size()), chunk.data()));
+      check(H5Pset_shuffle(creation.get()));
+      check(H5Pset_deflate(creation.get(), 4));
     }
     const h5::Id space(H5Screate_simple(static_cast<int>(size.size()), size.data(), nullptr));
     const h5::Id dataset(H5Dcreate2(file_.get(), path.c_str(), type, space.get(), links.get(), creation.get(), H5P_DEFAULT));
@@ -74,24 +71,26 @@ class PlantPacker {
     write_raw(path, H5T_NATIVE_DOUBLE, values.data(), {values.size(), 3, 4}, sizeof(FrameRows));
   }
 
+  static h5::Id text_type(std::size_t width) {
+    h5::Id type(H5Tcopy(H5T_C_S1));
+    check(H5Tset_size(type.get(), width));
+    check(H5Tset_strpad(type.get(), H5T_STR_NULLPAD));
+    check(H5Tset_cset(type.get(), H5T_CSET_UTF8));
+    return type;
+  }
+
   void write_strings(const std::string& path, const std::vector<std::string>& rows) {
     std::size_t width = 1;
     for (const auto& row : rows) width = std::max(width, row.size());
     std::string bytes(width * rows.size(), '\0');
     for (std::size_t i = 0; i < rows.size(); ++i)
       std::copy(rows[i].begin(), rows[i].end(), bytes.begin() + static_cast<std::ptrdiff_t>(i * width));
-    const h5::Id type(H5Tcopy(H5T_C_S1));
-    H5Tset_size(type.get(), width);
-    H5Tset_strpad(type.get(), H5T_STR_NULLPAD);
-    H5Tset_cset(type.get(), H5T_CSET_UTF8);
+    const h5::Id type = text_type(width);
     write_raw(path, type.get(), bytes.data(), {rows.size()}, width);
   }
 
   void write_text_attribute(const char* name, const std::string& value) {
-    const h5::Id type(H5Tcopy(H5T_C_S1));
-    H5Tset_size(type.get(), std::max<std::size_t>(value.size(), 1));
-    H5Tset_strpad(type.get(), H5T_STR_NULLPAD);
-    H5Tset_cset(type.get(), H5T_CSET_UTF8);
+    const h5::Id type = text_type(std::max<std::size_t>(value.size(), 1));
     write_attribute(name, type.get(), value.c_str());
   }
 
@@ -189,26 +188,19 @@ class PlantPacker {
   h5::Id file_;
 };
 
-/// Writes under a temporary name beside the target and renames when all is on disk; what was there stays until then.
-void replace_file(const std::string& target, const std::string& bytes) {
-  const std::string temporary = fmt::format("{}.part-{}", target, ::getpid());
-  std::FILE* out = std::fopen(temporary.c_str(), "wb");
-  bool good = out && std::fwrite(bytes.data(), 1, bytes.size(), out) == bytes.size();
-  good = good && std::fflush(out) == 0 && ::fsync(::fileno(out)) == 0;
-  int reason = good ? 0 : errno;
-  if (out && std::fclose(out) != 0 && good) reason = errno;
-  if (reason == 0 && std::rename(temporary.c_str(), target.c_str()) != 0) reason = errno;
-  if (reason == 0) return;
-  if (out) std::remove(temporary.c_str());
-  throw OutputError(fmt::format("{}: cannot be written: {}", target, std::strerror(reason)));
-}
-
 }  // namespace
 
 void write_plant_h5(const Plant& plant, const std::string& file) {
   check_plant(plant);
   const h5::Quiet quiet;
-  replace_file(file, PlantPacker().pack(plant));
+  const auto closes_failed_before = h5::failed_closes;
+  const std::string image = PlantPacker().pack(plant);
+  ReplacedFile out(file);
+  out.write(image);
+  out.flush();
+  if (h5::failed_closes != closes_failed_before || !h5::is_whole(out.temporary()))
+    throw OutputError(file + ": cannot be written: HDF5 has lost a part of it (out of memory?), which was noticed when it was read again");
+  out.commit();
 }
 
 }  // namespace sunfleck

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <sunfleck/core/error.hpp>
+#include <sunfleck/core/input_file.hpp>
 
 #include <format/scene_toml_parts.hpp>
 
@@ -95,6 +96,7 @@ std::string read_path(const TomlValue& value, const Scene& scene, const std::str
   std::error_code error;
   if (fs::is_directory(path, error)) value.fail("a folder, \"" + path.string() + '"', expected);
   if (!fs::exists(path, error)) value.fail("no file \"" + path.string() + '"', expected + " (its path is relative to the scene file)");
+  InputRecord::note(path.string());
   return path.string();
 }
 

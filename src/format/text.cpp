@@ -1,12 +1,11 @@
 #include <format/text.hpp>
 
 #include <charconv>
-#include <filesystem>
-#include <fstream>
 
 #include <fmt/format.h>
 
 #include <sunfleck/core/error.hpp>
+#include <sunfleck/core/input_file.hpp>
 
 namespace sunfleck {
 
@@ -17,31 +16,11 @@ constexpr std::string_view blanks = " \t\r\f\v";
 }  // namespace
 
 void check_readable(const std::string& file) {
-  std::error_code error;
-  const auto status = std::filesystem::status(file, error);
-  if (!std::filesystem::exists(status)) throw InputError(file, "no such file", "an existing file");
-  if (std::filesystem::is_directory(status)) throw InputError(file, "a folder", "a file");
-  // a pipe ends, a device such as /dev/zero need not
-  if (!std::filesystem::is_regular_file(status) && !std::filesystem::is_fifo(status))
-    throw InputError(file, "a device or socket", "a file");
+  check_input_file(file);
 }
 
 std::string read_whole(const std::string& file) {
-  check_readable(file);
-  std::ifstream in(file, std::ios::binary);
-  if (!in) throw InputError(file, "a file that cannot be opened", "permission to read it");
-  std::string bytes;
-  std::error_code error;
-  const auto size = std::filesystem::file_size(file, error);
-  if (!error && size > 0) {
-    bytes.resize(size);
-    in.read(bytes.data(), static_cast<std::streamsize>(size));
-    bytes.resize(static_cast<std::size_t>(in.gcount()));
-  } else {  // a pipe has no size
-    bytes.assign(std::istreambuf_iterator<char>(in), {});
-  }
-  if (in.bad()) throw InputError(file, "a read error", "a readable file");
-  return bytes;
+  return read_input_file(file);
 }
 
 bool is_utf8(std::string_view bytes) {

@@ -207,9 +207,11 @@ std::vector<double> TomlValue::numbers(std::size_t count, const std::string& nam
   return values;
 }
 
-TomlDocument::TomlDocument(const std::string& file) : parsed_(std::make_unique<TomlParsed>()) {
+TomlDocument::TomlDocument(const std::string& file) : TomlDocument(read_whole(file), file) {}
+
+TomlDocument::TomlDocument(std::string text, const std::string& file) : parsed_(std::make_unique<TomlParsed>()) {
   parsed_->file = file;
-  parsed_->text = read_whole(file);
+  parsed_->text = std::move(text);
   try {
     parsed_->root = toml::parse(std::string_view(parsed_->text), std::string_view(file));
   } catch (const toml::parse_error& error) {

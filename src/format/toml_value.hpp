@@ -75,6 +75,8 @@ class TomlDocument {
  public:
   /// Throws InputError if the file is missing, a folder, not readable or not TOML.
   explicit TomlDocument(const std::string& file);
+  /// The same for a text that was read from a file of that name.
+  TomlDocument(std::string text, const std::string& file);
   ~TomlDocument();
   TomlDocument(const TomlDocument&) = delete;
   TomlDocument& operator=(const TomlDocument&) = delete;

@@ -1,38 +1,18 @@
 #include <sunfleck/format/write_plant_obj.hpp>
 
-#include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <iterator>
 
 #include <fmt/format.h>
 
-#include <sunfleck/core/error.hpp>
+#include <sunfleck/core/companion_file.hpp>
+#include <sunfleck/core/replaced_file.hpp>
 
 namespace sunfleck {
 
-namespace {
-
-/// Written under a temporary name and renamed when complete.
-void write_whole(const std::string& file, const std::string& text) {
-  const std::string temporary = file + ".part";
-  std::ofstream out(temporary, std::ios::binary);
-  out.write(text.data(), static_cast<std::streamsize>(text.size()));
-  out.close();
-  std::error_code error;
-  if (out) std::filesystem::rename(temporary, file, error);
-  if (!out || error) {
-    std::error_code ignored;
-    std::filesystem::remove(temporary, ignored);
-    throw OutputError("cannot write " + file);
-  }
-}
-
-}  // namespace
-
 void write_plant_obj(const Plant& plant, const std::string& file) {
-  const std::filesystem::path materials_file = std::filesystem::path(file).replace_extension(".mtl");
-  std::string materials;
+  const std::string library = material_library_beside(file);
+  std::string materials(material_library_mark);
   for (std::size_t m = 0; m < plant.materials.size(); ++m) {
     const double hue = 0.35 + 0.3 * static_cast<double>(m % 3);
     materials += fmt::format("newmtl {}\nKd {:.2f} 0.45 0.20\n\n", plant.materials[m].empty() ? "none" : plant.materials[m], hue);
@@ -40,7 +20,7 @@ void write_plant_obj(const Plant& plant, const std::string& file) {
   fmt::memory_buffer out;
   const auto to = std::back_inserter(out);
   fmt::format_to(to, "# {}: {} structures, {} facets\nmtllib {}\n", plant.name, plant.structures.size(), plant.facet_count(),
-                 materials_file.filename().string());
+                 std::filesystem::path(library).filename().string());
   std::size_t first = 1;
   std::uint32_t group = no_parent, material = no_parent;
   for (const auto& shape : plant.shapes) {
@@ -64,8 +44,10 @@ void write_plant_obj(const Plant& plant, const std::string& file) {
     }
     first += mesh.vertices.size();
   }
-  write_whole(materials_file.string(), materials);
-  write_whole(file, fmt::to_string(out));
+  ReplacedFile to_library(library), to_file(file);
+  to_library.write(materials);
+  to_file.write(out.data(), out.size());
+  ReplacedFile::commit({&to_library, &to_file});
 }
 
 }  // namespace sunfleck

@@ -2,10 +2,8 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <chrono>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
+#include <string_view>
 #include <system_error>
 #include <type_traits>
 
@@ -13,6 +11,7 @@
 #include <sys/stat.h>
 
 #include <sunfleck/core/error.hpp>
+#include <sunfleck/core/input_file.hpp>
 #include <sunfleck/core/replaced_file.hpp>
 #include <sunfleck/core/sha256.hpp>
 
@@ -27,7 +26,6 @@ namespace fs = std::filesystem;
 /// Raised whenever the measurement changes its numbers.
 constexpr std::uint32_t measurement_version = 1;
 constexpr const char* suffix = ".original";
-constexpr auto abandoned_after = std::chrono::hours(24);  ///< temporary files of processes that were killed
 
 template <class T>
 void put(std::string& text, const T& value) {
@@ -38,6 +36,13 @@ void put(std::string& text, const T& value) {
 void put(std::string& text, const std::vector<float>& values) {
   put(text, static_cast<std::uint64_t>(values.size()));
   for (const float v : values) put(text, v);
+}
+
+/// KEY.original: other files of the folder are none of ours.
+bool is_entry_name(const std::string& name) {
+  constexpr std::size_t key_digits = 64;
+  return name.size() == key_digits + std::string_view(suffix).size() && name.ends_with(suffix) &&
+         name.find_first_not_of("0123456789abcdef") == key_digits;
 }
 
 }  // namespace
@@ -87,7 +92,8 @@ OriginalCache::OriginalCache(std::string folder, std::uint64_t limit_bytes, Prog
   if (folder_.empty()) return;
   std::error_code error;
   fs::create_directories(folder_, error);
-  if (!fs::is_directory(folder_)) warn("cannot be made" + (error ? ": " + error.message() : std::string(": there is a file of that name")));
+  if (std::error_code none; !fs::is_directory(folder_, none))
+    warn("cannot be made" + (error ? ": " + error.message() : std::string(": there is a file of that name")));
 }
 
 void OriginalCache::warn(const std::string& text) {
@@ -99,11 +105,15 @@ std::optional<OriginalTables> OriginalCache::find(const std::string& key, bool& 
   damaged = false;
   if (folder_.empty()) return {};
   const std::string path = (fs::path(folder_) / (key + suffix)).string();
-  std::ifstream in(path, std::ios::binary);
-  if (!in) return {};
-  std::ostringstream text;
-  text << in.rdbuf();
-  auto tables = from_entry(std::move(text).str(), key);
+  std::error_code error;
+  const auto status = fs::symlink_status(path, error);
+  if (!fs::exists(status)) return {};
+  std::optional<OriginalTables> tables;
+  try {
+    const InputRecord aside;  // an entry is no input: it may be replaced
+    if (fs::is_regular_file(status)) tables = from_entry(read_input_file(path), key);
+  } catch (const InputError&) {  // as good as damaged
+  }
   damaged = !tables;
   if (tables) ::utimensat(AT_FDCWD, path.c_str(), nullptr, 0);  // used now
   return tables;
@@ -114,7 +124,7 @@ bool OriginalCache::store(const std::string& key, const OriginalTables& tables) 
   const std::string path = (fs::path(folder_) / (key + suffix)).string(), bytes = to_entry(tables, key);
   if (bytes.size() > limit_bytes_) return false;
   try {
-    ReplacedFile file(path);
+    ReplacedFile file(path, ReplacedFile::Links::replace);
     file.write(bytes);
     file.commit();
   } catch (const OutputError& error) {
@@ -142,9 +152,7 @@ void OriginalCache::shrink(const std::string& newest) const {
       error.clear();
       continue;
     }
-    if (name[0] == '.' && name.find(std::string(suffix) + ".partial-") != std::string::npos) {
-      if (fs::file_time_type::clock::now() - used > abandoned_after) fs::remove(it->path(), error);
-    } else if (it->path().extension() == suffix) {
+    if (is_entry_name(name)) {
       const auto bytes = fs::file_size(it->path(), error);
       if (!error) {
         entries.push_back({used, bytes, it->path()});
@@ -153,6 +161,7 @@ void OriginalCache::shrink(const std::string& newest) const {
     }
     error.clear();
   }
+  remove_abandoned(folder_, suffix);
   std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) { return a.used < b.used; });
   for (const auto& e : entries) {
     if (total <= limit_bytes_) break;

@@ -6,6 +6,7 @@
 #include <type_traits>
 
 #include <sunfleck/core/error.hpp>
+#include <sunfleck/core/input_file.hpp>
 
 namespace sunfleck::h5 {
 
@@ -28,6 +29,9 @@ DatasetReader::DatasetReader(const std::string& path) : path_(path) {
   std::error_code error;
   if (!std::filesystem::exists(path, error)) throw InputError(path, "no such file", "a result file");
   if (std::filesystem::is_directory(path, error)) throw InputError(path, "a directory", "a result file");
+  if (!std::filesystem::is_regular_file(path, error))
+    throw InputError(path, "a pipe, device or socket", "a result file");  // HDF5 would wait at a pipe for ever
+  InputRecord::note(path);
   file_ = Id{H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT)};
   if (file_) return;
   const bool signature = H5Fis_hdf5(path.c_str()) > 0;

@@ -28,13 +28,18 @@ class OutputFile {
   const std::string& path() const { return replaced_.path(); }
   /// Throws OutputError naming the file if a write has failed, or if `good` is false.
   void check(bool good = true) const;
-  /// Flushes to the disk and renames. All handles of datasets must be closed.
+  /// Flushes to the disk, reads the file again, and renames. All handles of datasets must be closed.
   void commit();
+  /// The same for this file and another one that belongs to it: both or none.
+  void commit_with(ReplacedFile& other);
 
  private:
+  void complete();
+
   ReplacedFile replaced_;
   DriverState state_;
   Id file_;
+  std::uint64_t closes_failed_before_ = failed_closes;
 };
 
 }  // namespace sunfleck::h5

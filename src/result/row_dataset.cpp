@@ -21,9 +21,9 @@ constexpr std::uint32_t deflate_skipped = 1u << 1;           // filter 0 is shuf
 
 Id string_type(std::size_t length) {
   Id type{H5Tcopy(H5T_C_S1)};
-  H5Tset_size(type.get(), std::max<std::size_t>(length, 1));
-  H5Tset_cset(type.get(), H5T_CSET_UTF8);
-  H5Tset_strpad(type.get(), H5T_STR_NULLPAD);
+  const bool good = type && H5Tset_size(type.get(), std::max<std::size_t>(length, 1)) >= 0 && H5Tset_cset(type.get(), H5T_CSET_UTF8) >= 0 &&
+                    H5Tset_strpad(type.get(), H5T_STR_NULLPAD) >= 0;
+  if (!good) throw std::bad_alloc();  // nothing else can fail
   return type;
 }
 
@@ -88,15 +88,14 @@ RowDataset::RowDataset(OutputFile& file, ChunkQueue& queue, hid_t parent, const 
   chunked_ = total > small_bytes;
 
   const Id properties{H5Pcreate(H5P_DATASET_CREATE)}, space{H5Screate_simple(static_cast<int>(dims.size()), dims.data(), nullptr)};
-  H5Pset_obj_track_times(properties.get(), false);
-  H5Pset_attr_phase_change(properties.get(), 8, 6);
-  if (chunked_) {
-    H5Pset_chunk(properties.get(), static_cast<int>(chunk.size()), chunk.data());
-    H5Pset_shuffle(properties.get());
-    H5Pset_deflate(properties.get(), deflate_level);
-  } else if (total <= 1024) {
-    H5Pset_layout(properties.get(), H5D_COMPACT);
-  }
+  bool good = properties && space && element_size_ > 0 && H5Pset_obj_track_times(properties.get(), false) >= 0 &&
+              H5Pset_attr_phase_change(properties.get(), 8, 6) >= 0;
+  if (good && chunked_)
+    good = H5Pset_chunk(properties.get(), static_cast<int>(chunk.size()), chunk.data()) >= 0 && H5Pset_shuffle(properties.get()) >= 0 &&
+           H5Pset_deflate(properties.get(), deflate_level) >= 0;
+  else if (good && total <= 1024)
+    good = H5Pset_layout(properties.get(), H5D_COMPACT) >= 0;
+  file_.check(good);
   dataset_ = Id{H5Dcreate2(parent, name.c_str(), type, space.get(), H5P_DEFAULT, properties.get(), H5P_DEFAULT)};
   file_.check(static_cast<bool>(dataset_));
   if (!unit.empty()) {
@@ -168,15 +167,19 @@ void write_attribute(OutputFile& file, hid_t object, const char* name, const std
 
 Id make_group(OutputFile& file, hid_t parent, const char* name) {
   const Id properties{H5Pcreate(H5P_GROUP_CREATE)};
-  H5Pset_obj_track_times(properties.get(), false);
+  file.check(properties && H5Pset_obj_track_times(properties.get(), false) >= 0);
   Id group{H5Gcreate2(parent, name, H5P_DEFAULT, properties.get(), H5P_DEFAULT)};
   file.check(static_cast<bool>(group));
   return group;
 }
 
 Id open_or_make_group(OutputFile& file, hid_t parent, const char* name) {
-  if (H5Lexists(parent, name, H5P_DEFAULT) <= 0) return make_group(file, parent, name);
-  return Id{H5Gopen2(parent, name, H5P_DEFAULT)};
+  const htri_t there = H5Lexists(parent, name, H5P_DEFAULT);
+  file.check(there >= 0);
+  if (there == 0) return make_group(file, parent, name);
+  Id group{H5Gopen2(parent, name, H5P_DEFAULT)};
+  file.check(static_cast<bool>(group));
+  return group;
 }
 
 void ArrayWriter::write_raw(hid_t group, const char* name, hid_t type, const void* data, const RowDataset::Shape& shape,

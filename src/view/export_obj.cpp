@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <sunfleck/core/companion_file.hpp>
 #include <sunfleck/core/replaced_file.hpp>
 #include <sunfleck/view/export.hpp>
 
@@ -48,7 +49,7 @@ void export_obj(const Result& result, const std::string& file, const MeshChoice&
   const LitMesh mesh(result);
   const LitColours colours(result, mesh.geometry(), choice, progress);
   const auto materials = result.materials();
-  const std::string library = std::filesystem::path(file).replace_extension(".mtl").string();
+  const std::string library = material_library_beside(file);
 
   ReplacedFile out(file), out_library(library);
   MeanColours means(materials.size());
@@ -92,10 +93,8 @@ void export_obj(const Result& result, const std::string& file, const MeshChoice&
     out.write(text.data(), text.size());
     text.clear();
   });
-  out_library.write(material_text(materials, means));
-  out.flush();
-  out_library.commit();
-  out.commit();
+  out_library.write(std::string(material_library_mark) + material_text(materials, means));
+  ReplacedFile::commit({&out_library, &out});
 }
 
 }  // namespace sunfleck

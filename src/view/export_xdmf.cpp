@@ -7,10 +7,13 @@
 
 #include <fmt/format.h>
 
+#include <sunfleck/core/companion_file.hpp>
 #include <sunfleck/core/error.hpp>
+#include <sunfleck/core/input_file.hpp>
 #include <sunfleck/core/replaced_file.hpp>
 #include <sunfleck/view/export.hpp>
 
+#include "result/dataset_reader.hpp"
 #include "view/heavy_mesh.hpp"
 #include "view/mesh_columns.hpp"
 
@@ -103,6 +106,7 @@ std::vector<std::array<std::size_t, 2>> meshes_in_world(const ResultGeometry& ge
 }
 
 constexpr std::size_t most_pieces = 64;
+const std::string heavy_format = "sunfleck-xdmf";
 
 class XdmfText {
  public:
@@ -164,13 +168,24 @@ class XdmfText {
 
 }  // namespace
 
+bool is_our_heavy_data(const std::string& file) {
+  const InputRecord aside;  // looked at, not read
+  try {
+    const h5::DatasetReader there(file);
+    if (there.has_attribute("/", "format")) return there.text_attribute("/", "format") == heavy_format;
+    return there.has("colour");  // earlier versions
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
 void export_xdmf(const Result& result, const std::string& path, const MeshChoice& choice, Progress& progress) {
   const LitMesh mesh(result);
   const LitColours colours(result, mesh.geometry(), choice, progress);
   const fs::path folder = fs::absolute(fs::path(path)).parent_path();
   std::error_code ignored;
   const std::string source = fs::proximate(fs::absolute(result.file()), folder, ignored).string();
-  const std::string heavy_path = path + ".h5", heavy = fs::path(heavy_path).filename().string();
+  const std::string heavy_path = heavy_data_beside(path), heavy = fs::path(heavy_path).filename().string();
   if (fs::equivalent(heavy_path, result.file(), ignored))
     throw UsageError(fmt::format("{}: its points would overwrite the result {}; expected another name", path, result.file()));
   const std::size_t n = mesh.facet_count(), v = mesh.patches().vertex_count();
@@ -195,6 +210,7 @@ void export_xdmf(const Result& result, const std::string& path, const MeshChoice
   {
     const h5::Quiet quiet;
     h5::OutputFile file(heavy_path);
+    h5::write_attribute(file, file.id(), "format", heavy_format);
     {
       h5::ChunkQueue queue(file);
       h5::write_colours(file, queue, file.id(), "colour", mesh, colours, progress, 0.0, 0.4);
@@ -204,10 +220,9 @@ void export_xdmf(const Result& result, const std::string& path, const MeshChoice
         pieces.push_back({whole(float8, {v, 3}, heavy + ":/points"), whole(int8, {n, 3}, heavy + ":/triangles"), 0, n});
       }
     }
-    file.commit();
+    out.write(XdmfText(result, choice, source, heavy).write(pieces, n));
+    file.commit_with(out);
   }
-  out.write(XdmfText(result, choice, source, heavy).write(pieces, n));
-  out.commit();
 }
 
 }  // namespace sunfleck

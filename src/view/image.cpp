@@ -1,13 +1,8 @@
 #include <sunfleck/view/image.hpp>
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <cstdio>
-#include <cstring>
 #include <filesystem>
-
-#include <unistd.h>
 
 #define STBI_WRITE_NO_STDIO
 #include <stb_image_write.h>
@@ -15,6 +10,7 @@
 #include <fmt/core.h>
 
 #include <sunfleck/core/error.hpp>
+#include <sunfleck/core/replaced_file.hpp>
 
 namespace sunfleck {
 
@@ -40,8 +36,6 @@ void write_png(const Image& image, const std::string& file) {
   std::string suffix = std::filesystem::path(file).extension().string();
   std::transform(suffix.begin(), suffix.end(), suffix.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   if (suffix != ".png") throw UsageError(fmt::format("{}: found the suffix '{}'; expected .png", file, suffix));
-  if (std::filesystem::is_directory(file))
-    throw OutputError(fmt::format("{}: found a directory; expected a file name for the picture", file));
 
   std::vector<unsigned char> bytes;
   const auto append = [](void* context, void* data, int size) {
@@ -52,18 +46,9 @@ void write_png(const Image& image, const std::string& file) {
   if (stbi_write_png_to_func(append, &bytes, image.width(), image.height(), 3, image.data(), image.width() * 3) == 0)
     throw OutputError(fmt::format("{}: the picture could not be encoded", file));
 
-  const std::string temporary = fmt::format("{}.{}.tmp", file, ::getpid());
-  std::FILE* out = std::fopen(temporary.c_str(), "wb");
-  bool good = out != nullptr;
-  int reason = errno;
-  if (good) {
-    good = std::fwrite(bytes.data(), 1, bytes.size(), out) == bytes.size();
-    if (!good) reason = errno;
-    if (std::fclose(out) != 0 && good) good = false, reason = errno;
-    if (good && std::rename(temporary.c_str(), file.c_str()) != 0) good = false, reason = errno;
-    if (!good) std::remove(temporary.c_str());
-  }
-  if (!good) throw OutputError(fmt::format("{}: the picture could not be written: {}", file, std::strerror(reason)));
+  ReplacedFile out(file);
+  out.write(bytes.data(), bytes.size());
+  out.commit();
 }
 
 }  // namespace sunfleck

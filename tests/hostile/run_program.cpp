@@ -37,6 +37,14 @@ ProgramRun run_sunfleck(const std::vector<std::string>& arguments, const Program
         close(stream);
         return;
       }
+      if (file == "broken pipe") {
+        int ends[2];
+        if (pipe(ends) != 0) _exit(126);
+        close(ends[0]);
+        dup2(ends[1], stream);
+        close(ends[1]);
+        return;
+      }
       const int opened = open(file.c_str(), O_WRONLY | O_CREAT, 0600);
       if (opened == stream) return;
       dup2(opened, stream);
@@ -53,6 +61,10 @@ ProgramRun run_sunfleck(const std::vector<std::string>& arguments, const Program
       setrlimit(RLIMIT_STACK, &stack);
       setrlimit(RLIMIT_AS, &all);
     }
+    if (fate.ignored_signal > 0) std::signal(fate.ignored_signal, SIG_IGN);
+    std::signal(SIGPIPE, SIG_DFL);  // whatever the runner of the tests has made of it
+    if (fate.seconds > 0) alarm(fate.seconds);
+    for (const auto& variable : fate.environment) putenv(const_cast<char*>(variable.c_str()));
     execv(SUNFLECK_PROGRAM, argv.data());
     _exit(127);
   }

@@ -8,6 +8,9 @@
 
 namespace sunfleck::h5 {
 
+/// How often, on this thread, HDF5 could not close what it was asked to: what that held may not have reached its file.
+inline thread_local std::uint64_t failed_closes = 0;
+
 /// Owns an identifier of any kind.
 class Id {
  public:
@@ -20,7 +23,7 @@ class Id {
   }
   ~Id() { close(); }
   void close() {
-    if (id_ >= 0) H5Idec_ref(std::exchange(id_, H5I_INVALID_HID));
+    if (id_ >= 0 && H5Idec_ref(std::exchange(id_, H5I_INVALID_HID)) < 0) ++failed_closes;
   }
   explicit operator bool() const { return id_ >= 0; }
   hid_t get() const { return id_; }

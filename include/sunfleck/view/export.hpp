@@ -48,6 +48,8 @@ void export_vtkhdf(const Result& result, const std::string& file, const MeshChoi
 /// 1,
 /// ... Colours, and the mesh unless the result holds it in world coordinates, go to FILE.xdmf.h5.
 void export_xdmf(const Result& result, const std::string& file, const MeshChoice& choice, Progress& progress);
+/// Whether a file is what export_xdmf() puts beside an .xdmf.
+bool is_our_heavy_data(const std::string& file);
 
 /// One row an organ (RFC 4180, a header line): organ, plant, placement, name, type, area_m2, then per state and band absorbed_W_BAND,
 /// irradiance_front_BAND, irradiance_back_BAND [W m^-2], and per state sunlit_front, sunlit_back; "_STATE" is appended where there are
