@@ -87,9 +87,13 @@ void define_compare(CLI::App& verb, CompareOptions& o) {
   verb.add_option("REFERENCE", o.reference, "result to judge it by, HDF5; where it holds variances its own noise is taken out")
       ->required()
       ->type_name("");
+  verb.add_flag("--ignore-places", o.ignore_places,
+                "compare row by row although plants were moved or turned; organs must have the same areas");
   verb.add_flag("--json", o.json, "print JSON instead of a table");
   verb.footer(
-      "Both must be results of the same scene. Errors are of absorbed power per area, weighted by area, as fractions of the mean.\n\n"
+      "Both must be results of the same scene: the same organs and facets in the same places. Where light, optics or names differ, it "
+      "says\n"
+      "so. Errors are of absorbed power per area, weighted by area, as fractions of the mean.\n\n"
       "Example:\n"
       "  sunfleck compare stand.h5 truth.h5");
 }

@@ -20,6 +20,12 @@ nlohmann::ordered_json json_of(const std::vector<BandError>& errors, const std::
   return json;
 }
 
+/// The method, and the status where it is not the usual one.
+std::string made_by(const Result& file) {
+  const auto& header = file.header();
+  return header.status == "converged" ? header.method : header.method + ", " + header.status;
+}
+
 void print_rows(const std::string& state, const std::vector<BandError>& errors, const Result& reference) {
   for (std::size_t b = 0; b < errors.size(); ++b) {
     const auto& e = errors[b];
@@ -42,12 +48,13 @@ void print_table(const char* what, const ErrorTable& table, const Result& refere
 
 int verb_compare(const CompareOptions& options, Progress&) {
   const Result result(options.result), reference(options.reference);
-  const Comparison c = compare(result, reference);
+  const Comparison c = compare(result, reference, !options.ignore_places);
   const auto& bands = reference.bands();
   if (options.json) {
     nlohmann::ordered_json json;
-    json["result"] = {{"file", options.result}, {"method", result.header().method}};
-    json["reference"] = {{"file", options.reference}, {"method", reference.header().method}};
+    json["result"] = {{"file", options.result}, {"method", result.header().method}, {"status", result.header().status}};
+    json["reference"] = {{"file", options.reference}, {"method", reference.header().method}, {"status", reference.header().status}};
+    json["notes"] = c.notes;
     json["organs"] = json_of(c.organs.overall, bands);
     if (!c.facets.empty()) json["facets"] = json_of(c.facets.overall, bands);
     json["states"] = nlohmann::ordered_json::array();
@@ -61,8 +68,8 @@ int verb_compare(const CompareOptions& options, Progress&) {
     fmt::print("{}\n", json.dump(2));
     return 0;
   }
-  fmt::print("result     {} ({})\nreference  {} ({})\n", options.result, result.header().method, options.reference,
-             reference.header().method);
+  fmt::print("result     {} ({})\nreference  {} ({})\n", options.result, made_by(result), options.reference, made_by(reference));
+  for (const auto& note : c.notes) fmt::print("note       {}\n", note);
   fmt::print(
       "Absorbed power per area, area-weighted, over the reference's mean; the reference's noise is taken out of rmse, not of maximum.\n\n");
   print_table("per organ", c.organs, reference);

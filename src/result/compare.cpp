@@ -3,10 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <fmt/format.h>
-
-#include <sunfleck/core/error.hpp>
-#include <sunfleck/core/names.hpp>
+#include <sunfleck/result/scene_match.hpp>
 
 namespace sunfleck {
 
@@ -58,7 +55,6 @@ class Comparing {
  public:
   Comparing(const Result& result, const Result& reference)
       : x_(result), r_(reference), states_(reference.states().size()), bands_(reference.bands().size()) {
-    check_same_scene();
     choose_quantities();
   }
 
@@ -90,27 +86,6 @@ class Comparing {
   }
 
  private:
-  [[noreturn]] void differ(const std::string& found, const std::string& expected) const {
-    throw InputError(x_.file(), found, expected + " as in " + r_.file() + "; only results of the same scene can be compared");
-  }
-
-  void check_same_scene() const {
-    if (x_.bands() != r_.bands()) differ("bands " + joined(x_.bands()), "bands " + joined(r_.bands()));
-    if (x_.states().size() != states_) differ(fmt::format("{} lighting states", x_.states().size()), fmt::format("{}", states_));
-    if (x_.organ_count() != r_.organ_count()) differ(fmt::format("{} organs", x_.organ_count()), fmt::format("{}", r_.organ_count()));
-    if (x_.facet_count() != r_.facet_count() && x_.facet_count() > 0 && r_.facet_count() > 0)
-      differ(fmt::format("{} facets", x_.facet_count()), fmt::format("{}", r_.facet_count()));
-    for (std::size_t first = 0; first < r_.organ_count(); first += rows_at_once) {
-      const std::size_t count = std::min(rows_at_once, r_.organ_count() - first);
-      const auto a = x_.rows<float>("organs/area", first, count), b = r_.rows<float>("organs/area", first, count);
-      // slivers of rounding have the area that a compiler's order of operations gives them: zero, or next to it
-      const float nothing = 1e-9f * *std::max_element(b.begin(), b.end());
-      for (std::size_t o = 0; o < count; ++o)
-        if (std::abs(a[o] - b[o]) > 1e-4f * std::max(a[o], b[o]) + nothing)
-          differ(fmt::format("organ {} with an area of {} m^2", first + o, a[o]), fmt::format("{} m^2", b[o]));
-    }
-  }
-
   /// Absorbed or irradiance, per state and band and for all states together.
   void choose_quantities() {
     const auto balance = r_.balance();
@@ -184,9 +159,10 @@ class Comparing {
 
 }  // namespace
 
-Comparison compare(const Result& result, const Result& reference) {
+Comparison compare(const Result& result, const Result& reference, bool places) {
+  auto notes = check_same_scene(result, reference, places);
   const Comparing comparing(result, reference);
-  return {comparing.organs(), comparing.facets()};
+  return {comparing.organs(), comparing.facets(), std::move(notes)};
 }
 
 }  // namespace sunfleck

@@ -6,6 +6,7 @@
 
 #include <sunfleck/core/error.hpp>
 #include <sunfleck/core/names.hpp>
+#include <sunfleck/result/scene_match.hpp>
 #include <sunfleck/view/stored.hpp>
 
 #include "view/facet_lookup.hpp"
@@ -121,23 +122,12 @@ void MapMaker::error(bool organs_only) {
   if (!choice_.reference)
     throw UsageError(fmt::format("--quantity {}: found no reference; expected --reference RESULT.h5", choice_.quantity));
   const Result& reference = *choice_.reference;
-  if (reference.bands() != result_.bands())
-    throw InputError(location(reference.file(), 0, "bands"), joined(reference.bands()),
-                     joined(result_.bands()) + " as in " + result_.file());
-  if (reference.states().size() != result_.states().size())
-    throw InputError(location(reference.file(), 0, "states"), std::to_string(reference.states().size()),
-                     std::to_string(result_.states().size()) + " as in " + result_.file());
-  if (reference.organ_count() != result_.organ_count())
-    throw InputError(location(reference.file(), 0, "organs"), std::to_string(reference.organ_count()),
-                     std::to_string(result_.organ_count()) + " as in " + result_.file());
+  check_same_scene(reference, result_);
   const std::size_t b = result_.bands().size();
   const Column column{"absorbed", b, choice_.band, 0, false};
   // Facets only where both files keep them.
   const bool organs =
       by_organ(result_, column, organs_only || !reference.has("facets/absorbed")) || by_organ(reference, column, organs_only);
-  if (!organs && reference.facet_count() != result_.facet_count())
-    throw InputError(location(reference.file(), 0, "facets"), std::to_string(reference.facet_count()),
-                     std::to_string(result_.facet_count()) + " as in " + result_.file());
   const double mean = mean_absorbed(reference);
   if (!(mean > 0))
     throw InputError(location(reference.file(), 0, "absorbed"), "plants that absorb nothing in band " + result_.bands()[choice_.band],

@@ -92,8 +92,15 @@ json describe(const ViewerScenes& scenes) {
         {"by_width", scene->framing().by_width}, {"target", point(scene->framing().target)}, {"fov", usual.field_of_view_deg}};
     out["results"].push_back(std::move(one));
   }
-  out["difference"] = scenes.size() == 2 && scenes[0]->scene().size() == scenes[1]->scene().size() &&
-                      scenes[0]->scene().organs.size() == scenes[1]->scene().organs.size();
+  out["difference"] = false;
+  if (scenes.size() == 2) {
+    const SceneMatch match = scenes[0]->match(*scenes[1]);
+    out["difference"] = !match.difference;
+    out["notes"] = match.notes;
+    if (match.difference)
+      out["notes"].push_back(fmt::format("they are not of the same scene: {} in the first, {} in the second", match.difference->found,
+                                         match.difference->expected));
+  }
   return out;
 }
 

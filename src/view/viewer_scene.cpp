@@ -273,6 +273,15 @@ std::shared_ptr<const NaturalPaint> ViewerScene::natural(std::size_t state, bool
   return future.get();
 }
 
+SceneMatch ViewerScene::match(const ViewerScene& other) const {
+  const std::lock_guard lock(matching_);
+  if (!match_ || matched_ != other.stamp()) {
+    const std::lock_guard file(hdf5());
+    match_ = match_scenes(*result_, *other.result_), matched_ = other.stamp();
+  }
+  return *match_;
+}
+
 std::vector<float> ViewerScene::row(const std::string& dataset, std::size_t state, std::size_t row) const {
   const std::lock_guard file(hdf5());
   return result_->has(dataset) ? result_->state_rows<float>(dataset, state, row, 1) : std::vector<float>{};

@@ -15,6 +15,7 @@
 
 #include <sunfleck/core/progress.hpp>
 #include <sunfleck/result/result_reader.hpp>
+#include <sunfleck/result/scene_match.hpp>
 #include <sunfleck/view/picture.hpp>
 #include <sunfleck/view/stored.hpp>
 #include <sunfleck/visibility/quick_rays.hpp>
@@ -81,6 +82,9 @@ class ViewerScene {
   float organ_area(std::size_t organ) const { return organ_area_[organ]; }  ///< the file's [m^2]
   Vec3 normal(std::size_t facet) const;                                     ///< unit, of the front
 
+  /// How far this one, the first, and another are of one scene.
+  SceneMatch match(const ViewerScene& other) const;
+
   const Framing& framing() const { return framing_; }
 
   /// Nearest facet; `infinite`: a periodic scene repeats. From the exact tree once it is there; u and v are then those of the mesh's own
@@ -117,6 +121,10 @@ class ViewerScene {
   mutable std::atomic<bool> exact_ready_{false};
   mutable std::once_flag begun_;
   mutable std::shared_future<void> building_;
+
+  mutable std::mutex matching_;  ///< guards the latest match
+  mutable FileStamp matched_;
+  mutable std::optional<SceneMatch> match_;
 
   mutable std::mutex reading_;  ///< guards the file and the caches below
   struct CachedMap {

@@ -52,6 +52,7 @@ Answer file_answer(const WebFile& file) {
 void ViewerService::load() {
   ViewerScenes loaded;
   for (const auto& file : files_) loaded.push_back(std::make_shared<const ViewerScene>(file, stopping_));
+  if (loaded.size() == 2) loaded[0]->match(*loaded[1]);  // now, not when the page first asks
   const std::lock_guard lock(mutex_);
   scenes_ = std::move(loaded);
   ++generation_;

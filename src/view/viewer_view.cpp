@@ -113,8 +113,7 @@ ShownQuantity read_quantity(const Parameters& parameters, const ViewerScenes& sc
     if (q.quantity == "colour") refuse("quantity", q.quantity, "a number; a difference has no natural colour");
     const auto& other = *scenes[1];
     const auto& known = other.quantities();
-    if (other.scene().size() != scenes[0]->scene().size() || other.scene().organs.size() != scenes[0]->scene().organs.size())
-      refuse("difference", "1", "0; the results are not of the same scene");
+    if (scenes[0]->match(other).difference) refuse("difference", "1", "0; the results are not of the same scene");
     if (std::find(known.begin(), known.end(), q.quantity) == known.end() || q.band >= other.bands().size() ||
         q.state >= other.states().size())
       refuse("difference", "1", "a quantity, band and state that both results hold");

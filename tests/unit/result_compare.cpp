@@ -172,3 +172,78 @@ TEST_CASE("compare refuses results of different scenes and says what differs", "
     CHECK_THROWS_WITH(against(other), Catch::Contains("found organ 0 with an area of") && Catch::Contains(why));
   }
 }
+
+TEST_CASE("results of scenes that only look alike are refused: one organ lies, faces or repeats otherwise", "[result][compare]") {
+  const Folder folder;
+  const Scene scene = black_scene();
+  const std::string r = write(folder, "r.h5", scene, {std::vector<float>(expand(scene).size(), 1.0f), {}});
+  const std::string x = folder / "x.h5", why = " as in " + r + "; only results of the same scene can be compared";
+  const auto written = [&](const Scene& other) {
+    return Result(write(folder, "x.h5", other, {std::vector<float>(expand(other).size(), 1.0f), {}}));
+  };
+  Scene other = scene;
+  SECTION("a plant is moved by a centimetre") {
+    other.plants[0].placements[1].map.translation.x += 0.01;
+    CHECK_THROWS_WITH(compare(written(other), Result(r)),
+                      Catch::StartsWith(x + ": found facet ") && Catch::Contains(" at (") && Catch::EndsWith(why));
+    CHECK(compare(written(other), Result(r), false).organs.overall[0].rmse == 0.0);
+  }
+  SECTION("a plant is turned about itself") {
+    other.plants[0].placements[1].map = other.plants[0].placements[1].map * Affine::turn(0.01);
+    CHECK_THROWS_WITH(compare(written(other), Result(r)), Catch::Contains(": found facet ") && Catch::EndsWith(why));
+  }
+  SECTION("a facet faces elsewhere with its centroid where it was") {
+    auto plant = std::make_shared<Plant>(*scene.plants[0].plant);
+    auto& corners = plant->meshes[0].vertices;
+    const Vec3 middle = (corners[0] + corners[1] + corners[2]) / 3.0;
+    for (auto& p : corners) p = middle + Vec3{p.x - middle.x, p.z - middle.z, middle.y - p.y};  // a quarter about x
+    other.plants[0].plant = plant;
+    CHECK_THROWS_WITH(compare(written(other), Result(r)),
+                      Catch::StartsWith(x + ": found facet 0 of 0.0166667 m^2 that faces (") && Catch::EndsWith(why));
+  }
+  SECTION("the ground is higher") {
+    other.ground->height = -0.05;
+    CHECK_THROWS_WITH(compare(written(other), Result(r)), Catch::Contains(": found facet ") && Catch::EndsWith(why));
+  }
+  SECTION("one repeats") {
+    other.periodic = PeriodicCell{-10, -10, 10, 10};
+    CHECK_THROWS_WITH(compare(written(other), Result(r)),
+                      x + ": found a cell from (-10, -10) to (10, 10) that repeats; expected nothing that repeats" + why);
+  }
+  SECTION("without meshes, by centroids") {
+    Scene kept = scene;
+    for (Scene* one : {&kept, &other})
+      one->output.fields = {"facets/absorbed", "facets/area", "facets/centroid", "facets/organ", "organs/absorbed"};
+    other.plants[0].placements[1].map.translation.x += 0.01;
+    const std::string k = write(folder, "k.h5", kept, {std::vector<float>(expand(kept).size(), 1.0f), {}});
+    CHECK_THROWS_WITH(compare(written(other), Result(k)), Catch::Contains(": found facet "));
+    CHECK(compare(Result(k), Result(r)).notes.empty());
+  }
+}
+
+TEST_CASE("light, optics and names that differ are said, and what is rounded is not", "[result][compare]") {
+  const Folder folder;
+  const Scene scene = black_scene();
+  const std::string r = write(folder, "r.h5", scene, {std::vector<float>(expand(scene).size(), 1.0f), {}});
+  const auto notes = [&](const Scene& other) {
+    return compare(Result(write(folder, "x.h5", other, {std::vector<float>(expand(other).size(), 1.0f), {}})), Result(r)).notes;
+  };
+  CHECK(notes(scene).empty());
+  Scene other = scene;
+  other.plants[0].placements[1].map.translation.x += 1e-9;
+  CHECK(notes(other).empty());
+  other = scene;
+  other.states[0].sun->irradiance[0] = 500;
+  CHECK(notes(other) == std::vector<std::string>{"their light differs: sun"});
+  other.states[0].sky->model = SkyModel::standard_overcast;
+  CHECK(notes(other) == std::vector<std::string>{"their light differs: sun, sky"});
+  other = scene;
+  other.states[0].name = "morning";
+  CHECK(notes(other) == std::vector<std::string>{"their light differs: name of state 1 ('morning' and 'noon')"});
+  other = scene;
+  other.optics[0].reflectance_back = {0.5f};
+  CHECK(notes(other) == std::vector<std::string>{"their optics differ: leaf"});
+  other = scene;
+  other.plants[0].name = "bush";
+  CHECK(notes(other) == std::vector<std::string>{"their organs are named otherwise: organ 0 has the plant 'bush' and 'shrub'"});
+}

@@ -170,6 +170,11 @@ TEST_CASE("the error of a map is in percent of the reference's mean, and needs a
   const Result stranger(stored(folder, other, expand(other), "other.h5"));
   choice.reference = &stranger;
   REQUIRE_THROWS_AS(stored_map(result, drawn, choice, silent()), InputError);
+  Scene moved = scene;
+  moved.plants[0].placements[0].map.translation.y += 0.1;
+  const Result elsewhere(stored(folder, moved, expand(moved), "moved.h5"));
+  choice.reference = &elsewhere;
+  REQUIRE_THROWS_WITH(stored_map(result, drawn, choice, silent()), Catch::Contains("only results of the same scene can be compared"));
 }
 
 TEST_CASE("the scale of a map comes from plants, with the ground where that is mapped", "[view][result]") {

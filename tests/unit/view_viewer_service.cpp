@@ -275,6 +275,22 @@ TEST_CASE_METHOD(Fixture, "the difference of two results", "[view][viewer]") {
   CHECK(answer(service, "/api/frame", {{"quantity", "colour"}, {"difference", "1"}}).status == 400);
   CHECK(answer(service, "/api/legend", {{"quantity", "type"}, {"difference", "1"}}).status == 400);
 
+  CHECK(parsed(service, "/api/describe").at("notes").empty());
+  Scene brighter = scene;
+  brighter.states[0].sun->irradiance[0] *= 2;
+  ViewerService light({file, stored(folder / "brighter.h5", brighter, facets)});
+  light.load();
+  CHECK(parsed(light, "/api/describe").at("difference") == true);
+  CHECK(parsed(light, "/api/describe").at("notes").at(0) == "their light differs: sun of state noon");
+
+  Scene elsewhere = scene;  // as many facets and organs, of the same areas
+  elsewhere.plants[0].placements[1].map.translation.x += 0.3;
+  ViewerService moved({file, stored(folder / "moved.h5", elsewhere, expand(elsewhere))});
+  moved.load();
+  CHECK(parsed(moved, "/api/describe").at("difference") == false);
+  CHECK(parsed(moved, "/api/describe").at("notes").at(0).get<std::string>().starts_with("they are not of the same scene: facet "));
+  CHECK(answer(moved, "/api/frame", query).status == 400);
+
   const Scene small = small_scene(2);
   const FacetScene few = expand(small);
   ViewerService unlike({file, stored(folder / "few.h5", small, few)});

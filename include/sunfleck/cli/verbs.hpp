@@ -39,6 +39,7 @@ int verb_plan(const PlanOptions& options, Progress& progress);
 struct CompareOptions {
   std::string result, reference;
   bool json = false;
+  bool ignore_places = false;  ///< plants that were moved or turned are compared row by row
 };
 int verb_compare(const CompareOptions& options, Progress& progress);
 

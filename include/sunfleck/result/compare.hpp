@@ -37,10 +37,12 @@ struct ErrorTable {
 
 struct Comparison {
   ErrorTable organs;
-  ErrorTable facets;  ///< empty where one of the files keeps organs only
+  ErrorTable facets;               ///< empty where one of the files keeps organs only
+  std::vector<std::string> notes;  ///< what else than the solution differs: light, optics, names (scene_match.hpp)
 };
 
-/// Throws InputError naming what differs if the files are not of the same scene: bands, states, organs, their areas, facets.
-Comparison compare(const Result& result, const Result& reference);
+/// Throws InputError naming what differs if the files are not of the same scene: what match_scenes() of scene_match.hpp finds; without
+/// `places`, facets may lie and face elsewhere.
+Comparison compare(const Result& result, const Result& reference, bool places = true);
 
 }  // namespace sunfleck

@@ -241,12 +241,25 @@ function wire() {
   });
 }
 
+/// What is to be known before the pictures are believed.
+function doubts() {
+  const reasons = {
+    not_converged: "the solution did not converge, or missed the error that was asked for",
+    inaccurate: "its own certificate finds an error above three times what its quality aims at",
+  };
+  const lines = about.results.filter((r) => r.status !== "converged").map((r) => `${r.file} is ${r.status.replaceAll("_", " ")}: ${reasons[r.status] ?? "see sunfleck info"}.`);
+  if (about.notes?.length) lines.push(`Of the two results, ${about.notes.join("; ")}.`);
+  element("doubts").textContent = lines.join(" ");
+  element("doubts").hidden = lines.length === 0;
+}
+
 /// Reads what the results are; a camera that is already there stays.
 async function load() {
   about = await ask("describe");
   const first = about.results[0], two = about.results.length === 2;
   document.title = `${about.results.map((r) => r.file.split("/").at(-1)).join(" and ")} – Sunfleck`;
-  element("files").textContent = about.results.map((r) => `${r.file} (${r.facets.toLocaleString("en")} facets, ${r.method}${r.status === "converged" ? "" : ", not converged"})`).join("  |  ");
+  element("files").textContent = about.results.map((r) => `${r.file} (${r.facets.toLocaleString("en")} facets, ${r.method}${r.status === "converged" ? "" : `, ${r.status.replaceAll("_", " ")}`})`).join("  |  ");
+  doubts();
   for (const node of document.querySelectorAll(".compare")) node.hidden = !two;
   element("compare").querySelector("[value=difference]").disabled = !about.difference;
   fill(element("band"), first.bands.map((name, i) => [i, `${name} [${first.units[i]}]`]), true);
