@@ -295,6 +295,7 @@ test("light and dark", async () => {
 test("two results side by side, and their difference", async () => {
   const pair = startViewer([first, second]);
   const page = await openPage(browser, await pair.url);
+  assert.ok(await page.locator("#doubts").isHidden());
   await page.getByLabel("Quantity").selectOption("absorbed");
   await page.getByLabel("Compare").selectOption("both");
   await page.locator("#pane-1").waitFor({ state: "visible" });
@@ -321,6 +322,21 @@ test("two results side by side, and their difference", async () => {
   await closePage(page);
   pair.child.kill("SIGTERM");
   assert.equal(await pair.ended, 0);
+});
+
+test("what is to be known before a result is believed is said", async () => {
+  const context = await browser.newContext(), page = await context.newPage();
+  await page.route("**/api/describe", async (route) => {
+    const answer = await route.fetch(), about = await answer.json();
+    about.results[0].status = "inaccurate";
+    about.notes = ["their light differs: sun of state noon"];
+    await route.fulfill({ response: answer, json: about });
+  });
+  await page.goto(url);
+  await page.locator("#doubts").waitFor({ state: "visible" });
+  assert.match(await text(page, "#doubts"), /first\.h5 is inaccurate: .*certificate.*light differs: sun of state noon/);
+  assert.match(await text(page, "#files"), /, inaccurate/);
+  await context.close();
 });
 
 test("a result that is replaced is noticed and read again", async () => {
