@@ -1,7 +1,11 @@
 // Parses the command line, runs a verb, maps errors to exit codes.
 #include <sunfleck/cli/program.hpp>
 
+#include <unistd.h>
+
 #include <algorithm>
+#include <atomic>
+#include <cstdlib>
 #include <exception>
 #include <functional>
 #include <new>
@@ -138,6 +142,18 @@ class Program {
   std::vector<std::string> names_;
 };
 
+int out_of_memory() {
+  tell("sunfleck: not enough memory; 'sunfleck plan' predicts what a scene needs\n");
+  return failed;
+}
+
+std::atomic<bool> working{false};
+
+/// HDF5 (1.10.8) leaves the process by exit(-1) where it cannot have memory: no end for a program without a word.
+void say_why_it_ends() {
+  if (working) _exit(out_of_memory());
+}
+
 int guarded(int argc, char** argv) {
   try {
     const InputRecord what_is_read;
@@ -152,8 +168,7 @@ int guarded(int argc, char** argv) {
     tell(fmt::format("sunfleck: {}\n", error.what()));
     return stopped;
   } catch (const std::bad_alloc&) {
-    tell("sunfleck: not enough memory; 'sunfleck plan' predicts what a scene needs\n");
-    return failed;
+    return out_of_memory();
   } catch (const std::exception& error) {
     tell(fmt::format("sunfleck: {}\n", error.what()));
     return failed;
@@ -164,7 +179,10 @@ int guarded(int argc, char** argv) {
 
 int run_program(int argc, char** argv) {
   prepare_streams();
+  std::atexit(say_why_it_ends);
+  working = true;
   const int code = guarded(argc, argv);
+  working = false;
   if (output_arrived()) return code;
   tell("sunfleck: standard output could not be written: what it was to hold is lost\n");
   return code == done ? failed : code;

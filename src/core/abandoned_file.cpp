@@ -8,6 +8,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <sunfleck/core/folder.hpp>
+
 #include "core/partial_name.hpp"
 
 namespace sunfleck {
@@ -41,9 +43,7 @@ off_t remove_if_abandoned(const std::string& path, PartialName::Kind kind) {
 template <class Wanted>
 std::vector<AbandonedFile> remove_where(const fs::path& folder, const Wanted& wanted) {
   std::vector<AbandonedFile> removed;
-  std::error_code error;
-  for (fs::directory_iterator it(folder.empty() ? "." : folder, error), end; !error && it != end; it.increment(error)) {
-    const std::string name = it->path().filename().string();
+  for (const auto& name : names_in(folder.string())) {
     const PartialName partial = parse_partial_name(name);
     if (partial.kind == PartialName::Kind::none || !wanted(partial.name)) continue;
     const std::string path = (folder / name).string();

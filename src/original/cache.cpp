@@ -11,6 +11,7 @@
 #include <sys/stat.h>
 
 #include <sunfleck/core/error.hpp>
+#include <sunfleck/core/folder.hpp>
 #include <sunfleck/core/input_file.hpp>
 #include <sunfleck/core/replaced_file.hpp>
 #include <sunfleck/core/sha256.hpp>
@@ -145,17 +146,17 @@ void OriginalCache::shrink(const std::string& newest) const {
   std::vector<Entry> entries;
   std::uint64_t total = 0;
   std::error_code error;  // another process may be shrinking the same folder: what is gone is gone
-  for (fs::directory_iterator it(folder_, error), end; !error && it != end; it.increment(error)) {
-    const std::string name = it->path().filename().string();
-    const auto used = fs::last_write_time(it->path(), error);
+  for (const auto& name : names_in(folder_)) {
+    const fs::path path = fs::path(folder_) / name;
+    const auto used = fs::last_write_time(path, error);
     if (error) {
       error.clear();
       continue;
     }
     if (is_entry_name(name)) {
-      const auto bytes = fs::file_size(it->path(), error);
+      const auto bytes = fs::file_size(path, error);
       if (!error) {
-        entries.push_back({used, bytes, it->path()});
+        entries.push_back({used, bytes, path});
         total += bytes;
       }
     }

@@ -1,4 +1,19 @@
-// The one translation unit that holds stb_image_write's code.
+// The one translation unit that holds stb_image_write's code. It does not look at what malloc returns: here that throws instead.
+#include <cstdlib>
+#include <new>
+
+namespace {
+
+void* memory_or_throw(void* got) {
+  if (!got) throw std::bad_alloc();
+  return got;
+}
+
+}  // namespace
+
+#define STBIW_MALLOC(size) memory_or_throw(std::malloc(size))
+#define STBIW_REALLOC(old, size) memory_or_throw(std::realloc(old, size))
+#define STBIW_FREE(old) std::free(old)
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wall"
 #pragma GCC diagnostic ignored "-Wextra"

@@ -138,6 +138,20 @@ TEST_CASE("what is written beside an output takes the place of nothing that is n
   }
 }
 
+TEST_CASE("a full disk leaves neither a plant nor the library beside it", "[cli][lost]") {
+  const TemporaryFolder folder;
+  for (const std::string name : {"wheat.obj", "wheat.h5"})
+    for (const std::size_t bytes : {std::size_t{60}, std::size_t{1000}}) {
+      ProgramFate fate;
+      fate.disk_bytes = bytes;
+      fate.err = "closed";
+      fate.out = "/dev/null";
+      CHECK(run_sunfleck({"generate", SUNFLECK_SOURCE_DIR "/plants/wheat.toml", "-o", folder.path(name), "--age", "10"}, fate).exit_code ==
+            1);
+      CHECK(folder.listing().empty());
+    }
+}
+
 TEST_CASE("import replaces a scene that it wrote, and no other", "[cli][lost][import]") {
   const Field field;
   const std::string can = field.folder.file("plants.can", "p 1 100001001000 3 0 0 1 1 0 1 0 1 1\n"), scene = field.folder.path("new.toml");

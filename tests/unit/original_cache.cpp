@@ -1,6 +1,8 @@
 // Tables on disk: found again, told apart, checked, bounded, shared.
 #include <catch2/catch.hpp>
 
+#include <sys/stat.h>
+
 #include <chrono>
 #include <cmath>
 #include <filesystem>
@@ -159,6 +161,33 @@ TEST_CASE("The cache is bounded: what was not used for longest goes", "[original
   narrow.tables(leaf(4), coarse(), state);
   CHECK_FALSE(fs::exists(left));
   CHECK(fs::exists(fresh));
+}
+
+TEST_CASE("What is no file in the place of an entry blocks nothing and is not followed; other files of the folder stay",
+          "[original][cache]") {
+  const ScratchFolder folder;
+  Heard heard;
+  CacheState state;
+  const std::string path = folder.path + "/" + original_key(leaf(), coarse()) + ".original";
+  const std::string mine = folder.path + "/mine", other = folder.path + "/picture.original";
+  std::ofstream(mine) << "mine";
+  std::ofstream(other) << std::string(4096, 'x');
+  REQUIRE(::mkfifo(path.c_str(), 0600) == 0);
+  OriginalCache(folder.path, 1u << 20, heard).tables(leaf(), coarse(), state);
+  CHECK(state == CacheState::unsaved);
+  REQUIRE(heard.lines.size() == 1);
+  CHECK(heard.lines[0].find("cannot be written: it is a device or a pipe, no file") != std::string::npos);
+  fs::remove(path);
+  fs::create_symlink("mine", path);
+  OriginalCache(folder.path, 1024, silent()).tables(leaf(), coarse(), state);
+  CHECK(state == CacheState::unsaved);  // it is larger than that
+  OriginalCache(folder.path, 1u << 20, silent()).tables(leaf(), coarse(), state);
+  CHECK(state == CacheState::rebuilt);
+  CHECK(fs::is_regular_file(fs::symlink_status(path)));
+  CHECK(bytes_of(mine) == "mine");
+  OriginalCache(folder.path, fs::file_size(path), silent()).tables(leaf(2), coarse(), state);
+  CHECK_FALSE(fs::exists(path));
+  CHECK(fs::exists(other));  // not an entry by its name
 }
 
 TEST_CASE("A folder that cannot be used is a message, once", "[original][cache]") {
