@@ -1,7 +1,9 @@
 #include <sunfleck/core/replaced_file.hpp>
 
+#include <chrono>
 #include <ctime>
 #include <filesystem>
+#include <thread>
 
 #include <fcntl.h>
 #include <sys/file.h>
@@ -17,6 +19,8 @@ namespace sunfleck {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr std::time_t just_now = 2;  ///< [s]
 
 /// How long nobody must have written a temporary before it is taken for abandoned [s].
 std::time_t patience(PartialName::Kind kind) {
@@ -34,8 +38,14 @@ off_t remove_if_abandoned(const std::string& path, PartialName::Kind kind) {
   const int descriptor = ::open(path.c_str(), O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
   if (descriptor < 0) return -1;
   const bool same = ::fstat(descriptor, &opened) == 0 && opened.st_dev == named.st_dev && opened.st_ino == named.st_ino;
-  // whoever writes it holds a lock, which ends with him
-  const bool removed = same && ::flock(descriptor, LOCK_EX | LOCK_NB) == 0 && ::unlink(path.c_str()) == 0;
+  // whoever writes it holds a lock, which ends with him; who has just made it may be about to
+  bool free = same && ::flock(descriptor, LOCK_EX | LOCK_NB) == 0;
+  if (free && std::time(nullptr) - named.st_mtime <= just_now) {
+    ::flock(descriptor, LOCK_UN);
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    free = ::flock(descriptor, LOCK_EX | LOCK_NB) == 0 && ::fstat(descriptor, &opened) == 0 && opened.st_nlink > 0;
+  }
+  const bool removed = free && ::unlink(path.c_str()) == 0;
   ::close(descriptor);
   return removed ? named.st_size : -1;
 }

@@ -94,6 +94,7 @@ void ReplacedFile::open_temporary() {
 }
 
 ReplacedFile::~ReplacedFile() {
+  if (old_descriptor_ >= 0) ::close(old_descriptor_);
   if (descriptor_ < 0) return;
   if (!committed_) ::unlink(temporary_.c_str());
   ::close(descriptor_);
@@ -146,7 +147,9 @@ void ReplacedFile::keep_old() {
   if (!replaces_) return;
   const fs::path place(target_);
   old_ = (place.parent_path() / partial_name(place.filename().string())).string();
-  if (::link(target_.c_str(), old_.c_str()) != 0) old_.clear();  // not every file system has second names
+  old_descriptor_ = ::open(target_.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+  if (old_descriptor_ >= 0) ::flock(old_descriptor_, LOCK_SH | LOCK_NB);  // in use, for whoever tidies up
+  if (::link(target_.c_str(), old_.c_str()) != 0) old_.clear();           // not every file system has second names
 }
 
 void ReplacedFile::rename_to_target() {

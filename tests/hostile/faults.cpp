@@ -111,7 +111,7 @@ class Bench {
       if (const auto why = broken(name, bytes); !why.empty()) return name + " " + why + ": " + run.err;
     }
     for (const auto& name : work.outputs)
-      if (run.exit_code == 0 && now[name] == inputs_[name]) return name + " is the older one though the exit code is 0: " + run.err;
+      if (run.exit_code == 0 && now[name] == inputs_[name] && now[name] != whole_[name]) return name + " is the older one though the exit code is 0: " + run.err;
     return {};
   }
 

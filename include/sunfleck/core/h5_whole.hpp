@@ -34,7 +34,11 @@ inline herr_t look_at(hid_t root, const char* name, const H5O_info_t* info, void
 /// memory runs out and say nothing (1.10.8).
 inline bool is_whole(const std::string& path) {
   const Quiet quiet;
-  const Id file{H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT)};
+  const Id access{H5Pcreate(H5P_FILE_ACCESS)};
+#if H5_VERSION_GE(1, 12, 1) || (H5_VERSION_GE(1, 10, 7) && !H5_VERSION_GE(1, 12, 0))
+  if (!access || H5Pset_file_locking(access.get(), false, true) < 0) return false;  // not every file system has locks; nobody else writes
+#endif
+  const Id file{H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.get())};
   if (!file) return false;
   int broken = 0;
   return H5Ovisit2(file.get(), H5_INDEX_NAME, H5_ITER_NATIVE, whole_detail::look_at, &broken, H5O_INFO_BASIC) >= 0 && broken == 0;

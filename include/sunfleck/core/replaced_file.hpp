@@ -67,7 +67,7 @@ class ReplacedFile {
   bool replaces_ = false, committed_ = false;
   uid_t owner_ = 0;
   gid_t group_ = 0;
-  int descriptor_ = -1;
+  int descriptor_ = -1, old_descriptor_ = -1;
 };
 
 /// Removes what processes that were killed have left of `path`: temporaries of this machine that no one has locked, and those of other
