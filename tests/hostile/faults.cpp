@@ -111,7 +111,8 @@ class Bench {
       if (const auto why = broken(name, bytes); !why.empty()) return name + " " + why + ": " + run.err;
     }
     for (const auto& name : work.outputs)
-      if (run.exit_code == 0 && now[name] == inputs_[name] && now[name] != whole_[name]) return name + " is the older one though the exit code is 0: " + run.err;
+      if (run.exit_code == 0 && now[name] == inputs_[name] && now[name] != whole_[name])
+        return name + " is the older one though the exit code is 0: " + run.err;
     return {};
   }
 
@@ -178,12 +179,12 @@ TEST_CASE("one call of the system that fails costs no file and no order", "[faul
   const char* wish = std::getenv("SUNFLECK_FAULTS");
   const long per_kind = wish ? std::atol(wish) : 1;
   Bench bench;
-  std::size_t turn = 0;
-  for (const auto& work : bench.works())
+  std::size_t turn = 0;  // by default each work meets a third of the kinds
+  for (const auto& work : bench.works()) {
+    ++turn;
     for (const auto& kind : kinds) {
-      if (!wish && (turn++ % 3 != 0)) continue;  // each kind meets a third of the works
+      if (!wish && turn++ % 3 != 0) continue;
       const long calls = bench.count(work, kind), tried = std::min(calls, per_kind);
-      std::map<std::string, long> troubles;
       std::map<int, long> codes;
       for (long i = 0; i < tried; ++i) {
         const long n =
@@ -201,4 +202,5 @@ TEST_CASE("one call of the system that fails costs no file and no order", "[faul
         fmt::print("| {} | {} | {} | {} |{} |\n", work.name, kind, calls, tried, text);
       }
     }
+  }
 }
