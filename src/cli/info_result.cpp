@@ -1,11 +1,5 @@
 #include "cli/info_result.hpp"
-
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-#include <nlohmann/json.hpp>
-
-#include <sunfleck/result/result_reader.hpp>
-
+#include "cli/json_text.hpp"
 #include "cli/solve_table.hpp"
 #include "cli/text_units.hpp"
 
@@ -138,7 +132,7 @@ void print_states(const Result& r) {
 void print_result_info(const std::string& file, bool json) {
   const Result r(file);
   if (json) {
-    fmt::print("{}\n", json_of(r).dump(2));
+    fmt::print("{}\n", json_text(json_of(r)));
     return;
   }
   const auto& header = r.header();

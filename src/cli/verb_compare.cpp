@@ -5,6 +5,8 @@
 
 #include <sunfleck/result/compare.hpp>
 
+#include "cli/json_text.hpp"
+
 namespace sunfleck {
 
 namespace {
@@ -65,7 +67,7 @@ int verb_compare(const CompareOptions& options, Progress&) {
       if (!c.facets.empty()) state["facets"] = json_of(c.facets.states[s], bands);
       json["states"].push_back(state);
     }
-    fmt::print("{}\n", json.dump(2));
+    fmt::print("{}\n", json_text(json));
     return 0;
   }
   fmt::print("result     {} ({})\nreference  {} ({})\n", options.result, made_by(result), options.reference, made_by(reference));

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
-#include <sstream>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -20,6 +19,7 @@
 #include <sunfleck/scene/counts.hpp>
 
 #include "cli/info_result.hpp"
+#include "cli/json_text.hpp"
 #include "cli/text_units.hpp"
 
 namespace sunfleck {
@@ -45,12 +45,13 @@ Json json_of(const PlantSummary& p) {
     json["types"][t.type] = {{"structures", t.structures}, {"organs", t.organs}, {"facets", t.facets}, {"area_m2", t.area_m2}};
   if (!p.bounds.empty())
     json["bounds_m"] = {{p.bounds.low.x, p.bounds.low.y, p.bounds.low.z}, {p.bounds.high.x, p.bounds.high.y, p.bounds.high.z}};
+  json["notes"] = p.notes;
   return json;
 }
 
 void plant_info(const Plant& plant, bool json) {
   const auto summary = summarize_plant(plant);
-  fmt::print("{}{}", json ? json_of(summary).dump(2) : describe_plant(summary), json ? "\n" : "");
+  fmt::print("{}{}", json ? json_text(json_of(summary)) : describe_plant(summary), json ? "\n" : "");
 }
 
 void species_info(const std::string& file, bool json) {
@@ -60,7 +61,7 @@ void species_info(const std::string& file, bool json) {
     Json out{{"file", file},        {"kind", "species"}, {"name", species.name}, {"age", species.age}, {"age_unit", species.age_unit},
              {"seed", species.seed}};
     out["plant"] = json_of(summary);
-    fmt::print("{}\n", out.dump(2));
+    fmt::print("{}\n", json_text(out));
     return;
   }
   fmt::print("species    {} ({})\ngrown to   {} {}, seed {}\n{}", species.name, file, species.age, species.age_unit, species.seed,
@@ -85,24 +86,17 @@ void scene_info(const std::string& file, bool json) {
                                {"copies", counts.copies[p]}});
     if (scene.periodic) out["periodic"] = {scene.periodic->x_low, scene.periodic->y_low, scene.periodic->x_high, scene.periodic->y_high};
     out["notes"] = scene.notes;
-    fmt::print("{}\n", out.dump(2));
+    fmt::print("{}\n", json_text(out));
     return;
   }
   fmt::print("scene      {}\nbands      {}\nstates     {}\n", file, fmt::join(scene.bands, ", "), scene.states.size());
   if (scene.periodic) fmt::print("repeats    every {:g} x {:g} m\n", scene.periodic->width(), scene.periodic->depth());
   for (std::size_t p = 0; p < scene.plants.size(); ++p)
-    fmt::print("{:<11}{}: {} x {} ({})\n", p == 0 ? "plants" : "", scene.plants[p].name, counted(counts.copies[p], "copy", "copies"),
+    fmt::print("{:<11}{}: {} x {} ({})\n", p == 0 ? "plants" : "", scene.plants[p].name,
+               copies_text(counts.copies[p]) + (counts.copies[p] == 1 ? " copy" : " copies"),
                counted(scene.plants[p].plant->facet_count(), "facet", "facets"), scene.plants[p].plant->file);
   fmt::print("facets     {} of plants, {} of the ground\norgans     {}\n", counts.plant_facets, counts.ground_facets, counts.organs);
   for (const auto& note : scene.notes) fmt::print("note       {}\n", note);
-}
-
-/// A species names the program that grows it; a scene does not.
-bool is_species(const std::string& file) {
-  std::istringstream in(read_input_file(file));
-  for (std::string line; std::getline(in, line) && line.rfind('[', 0) != 0;)
-    if (line.rfind("program", 0) == 0) return true;
-  return false;
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include <sunfleck/original/originals.hpp>
 #include <sunfleck/original/suggest.hpp>
 
+#include "cli/json_text.hpp"
 #include "cli/text_units.hpp"
 
 namespace sunfleck {
@@ -178,7 +179,7 @@ int verb_originals(const OriginalsOptions& options, Progress& progress) {
     }
   }
   if (options.json) {
-    fmt::print("{}\n", json_of(scene, classification, measured).dump(2));
+    fmt::print("{}\n", json_text(json_of(scene, classification, measured)));
   } else {
     print_classes(scene, classification);
     print_tables(scene, classification, measured);

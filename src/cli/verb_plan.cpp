@@ -10,6 +10,7 @@
 #include <sunfleck/core/memory.hpp>
 #include <sunfleck/format/scene_toml.hpp>
 
+#include "cli/json_text.hpp"
 #include "cli/plan.hpp"
 #include "cli/text_units.hpp"
 
@@ -75,7 +76,7 @@ int verb_plan(const PlanOptions& options, Progress& progress) {
   for (const auto& note : scene.notes) progress.line("note: " + note);
   const Plan plan = make_plan(scene, choice, progress, bytes_at_start, options.threads);
   if (options.json)
-    fmt::print("{}\n", json_of(scene, plan).dump(2));
+    fmt::print("{}\n", json_text(json_of(scene, plan)));
   else
     print_text(scene, plan);
   return 0;

@@ -43,6 +43,22 @@ std::string nearest_name(std::string_view found, std::span<const std::string> kn
   return name;
 }
 
+std::vector<std::string> distinct_names(std::span<const std::string> names, const std::function<std::string(const std::string&)>& clean,
+                                        const std::set<std::string>& taken) {
+  std::vector<std::string> out(names.size());
+  std::set<std::string> used;
+  std::vector<std::size_t> changed;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    out[i] = clean(names[i]);
+    if (out[i] != names[i] || !used.insert(out[i]).second) changed.push_back(i);
+  }
+  for (const auto i : changed) {
+    const std::string name = out[i];
+    for (int k = 2; taken.count(out[i]) > 0 || !used.insert(out[i]).second; ++k) out[i] = name + "_" + std::to_string(k);
+  }
+  return out;
+}
+
 std::string joined(std::span<const std::string> names) {
   std::string text;
   for (const auto& n : names) text += (text.empty() ? "" : ", ") + n;

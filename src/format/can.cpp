@@ -5,14 +5,17 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <numeric>
 #include <unordered_map>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
+#include <format/polygons.hpp>
 #include <format/text.hpp>
 #include <sunfleck/core/error.hpp>
+#include <sunfleck/core/utf8.hpp>
 #include <sunfleck/plant/build.hpp>
 
 namespace sunfleck {
@@ -32,7 +35,7 @@ class CanReader {
   explicit CanReader(const std::string& file) : file_(file) {}
 
   Plant read() {
-    const std::string text = read_whole(file_);
+    const std::string text = read_text(file_, plant_.notes);
     Lines lines(text);
     std::string_view line;
     while (lines.next(line)) {
@@ -43,6 +46,7 @@ class CanReader {
       if (key != "p") fail(in_quotes(key), "a polygon \"p 1 LABEL 3 x y z ...\" or a comment \"# ...\"");
       polygon(words);
     }
+    cutter_.note(file_, plant_.notes);
     build();
     return std::move(plant_);
   }
@@ -85,12 +89,11 @@ class CanReader {
     for (std::int64_t i = 0; i < corners; ++i) mesh_.vertices.push_back(read_point(words, file_, number_, "a corner"));
     if (const auto extra = words.next(); !extra.empty() && extra[0] != '#')
       fail(fmt::format("{} after {} corners", in_quotes(extra), corners), "the end of the line");
-    for (std::size_t k = 2; k < static_cast<std::size_t>(corners); ++k) {
-      mesh_.triangles.push_back(
-          {static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(first + k - 1), static_cast<std::uint32_t>(first + k)});
-      owner_.push_back(organ_);
-      materials_.push_back(material_);
-    }
+    corners_.resize(static_cast<std::size_t>(corners));
+    std::iota(corners_.begin(), corners_.end(), static_cast<std::uint32_t>(first));
+    for (const auto& t : cutter_.cut(mesh_.vertices, corners_, file_, number_)) mesh_.triangles.push_back(t);
+    owner_.resize(mesh_.triangles.size(), organ_);
+    materials_.resize(mesh_.triangles.size(), material_);
   }
 
   /// Makes the organ of a label the one that the next triangles belong to.
@@ -129,9 +132,10 @@ class CanReader {
 
   const std::string& file_;
   long number_ = 0;
-  Plant plant_ = empty_plant(std::filesystem::path(file_).stem().string(), file_, "canopy");
+  Plant plant_ = empty_plant(clean_name(std::filesystem::path(file_).stem().string()), file_, "canopy");
   Mesh mesh_;
-  std::vector<std::uint32_t> owner_, materials_;
+  PolygonCutter cutter_;
+  std::vector<std::uint32_t> owner_, materials_, corners_;
   std::vector<Label> organs_;  ///< the first label of each
   std::vector<std::vector<std::uint32_t>> organs_of_plant_;
   std::unordered_map<std::int64_t, std::uint32_t> organ_index_, plant_index_;

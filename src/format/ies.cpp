@@ -76,10 +76,7 @@ std::string_view trimmed(std::string_view line) {
 /// Reads on to the line TILT=..., and says what follows the equals sign.
 std::string find_tilt(const std::string& file, Lines& lines) {
   std::string_view line;
-  bool first = true;
   while (lines.next(line)) {
-    if (first && line.substr(0, 3) == "\xef\xbb\xbf") line.remove_prefix(3);
-    first = false;
     line = trimmed(line);
     if (line.substr(0, 5) == "TILT=" || line.substr(0, 5) == "TILT ") {
       const auto equals = line.find('=');
@@ -102,7 +99,8 @@ void read_opening(double width, double length, double unit, Photometry& out) {
 }  // namespace
 
 Photometry read_ies(const std::string& file) {
-  const std::string text = read_whole(file);
+  std::vector<std::string> ignored;  // words of the header, which nothing keeps
+  const std::string text = read_text(file, ignored);
   Lines lines(text);
   const std::string tilt = find_tilt(file, lines);
   Photometry out;

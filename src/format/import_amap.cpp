@@ -12,6 +12,7 @@
 #include <format/import_parts.hpp>
 #include <format/text.hpp>
 #include <sunfleck/core/error.hpp>
+#include <sunfleck/core/utf8.hpp>
 #include <sunfleck/format/read_plant.hpp>
 
 namespace sunfleck {
@@ -49,12 +50,7 @@ class OpsReader {
   }
 
   void read() {
-    check_readable(file_);
-    std::string text = read_whole(file_);
-    if (!is_utf8(text)) {
-      text = from_latin1(text);
-      out_.notes.push_back("the .ops is no UTF-8: its letters are taken for Latin-1");
-    }
+    const std::string text = read_text(file_, out_.notes);
     Lines lines(text);
     std::string_view line;
     std::set<std::int64_t> ids;
@@ -201,6 +197,7 @@ class OpsReader {
     for (const auto& o : objects_)
       if (std::find(plants.begin(), plants.end(), std::pair{o.file, o.group}) == plants.end()) plants.emplace_back(o.file, o.group);
     std::set<std::string> names;
+    if (has_terrain_) names.insert("ground");  // what results call the ground
     for (const auto& plant : plants) {
       const auto &file = plant.first, &group = plant.second;  // clang 14 lets no lambda capture a structured binding
       const auto first =
@@ -208,7 +205,7 @@ class OpsReader {
       line_ = first->line;
       std::error_code none;  // a name too long, a folder without access: no file either
       if (!std::filesystem::exists(file, none)) fail(fmt::format("no file {}", file), "a plant file");
-      std::string base = group.empty() ? std::filesystem::path(file).stem().string() : group;
+      std::string base = clean_name(group.empty() ? std::filesystem::path(file).stem().string() : group);
       std::replace(base.begin(), base.end(), '/', '_');
       std::string name = base;
       for (int i = 2; !names.insert(name).second; ++i) name = fmt::format("{}_{}", base, i);

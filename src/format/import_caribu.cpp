@@ -13,7 +13,9 @@
 #include <format/import_parts.hpp>
 #include <format/text.hpp>
 #include <sunfleck/core/error.hpp>
+#include <sunfleck/core/utf8.hpp>
 #include <sunfleck/format/read_plant.hpp>
+#include <sunfleck/light/state.hpp>
 
 namespace sunfleck {
 
@@ -35,8 +37,8 @@ struct OptFile {
 /// Calls visit(words, number) for each line of a text file.
 template <class Visit>
 void each_line(const std::string& file, Visit&& visit) {
-  check_readable(file);
-  const std::string text = read_whole(file);
+  std::vector<std::string> ignored;  // comments, of which nothing is kept
+  const std::string text = read_text(file, ignored);
   Lines lines(text);
   for (std::string_view line; lines.next(line);) {
     Words words(line);
@@ -48,7 +50,7 @@ class OptReader {
  public:
   explicit OptReader(const std::string& file) : file_(file) {
     out_.file = file;
-    out_.band = std::filesystem::path(file).stem().string();
+    out_.band = clean_name(std::filesystem::path(file).stem().string());
     std::string upper = out_.band;
     std::transform(upper.begin(), upper.end(), upper.begin(), [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
     if (upper == "PAR" || upper == "NIR") out_.band = upper;
@@ -129,8 +131,8 @@ std::vector<LightDirection> read_light(const std::string& file) {
     const Vec3 towards = -glm::normalize(v / std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)}));  // no square overflows
     if (!(towards.z > 0)) throw InputError(where, fmt::format("direction {} {} {}", v.x, v.y, v.z), "one that goes down (z below 0)");
     sum += energy;
-    if (!std::isfinite(energy / towards.z) || !std::isfinite(sum))
-      throw InputError(where, fmt::format("energy {}", energy), "one so small that its beam, and the sum of all, are finite");
+    if (!(energy / towards.z <= brightest) || !(sum <= brightest))
+      throw InputError(where, fmt::format("energy {}", energy), fmt::format("a beam, and a sum of all, of at most {} W m^-2", brightest));
     if (energy > 0) out.push_back({energy, towards, number});
   });
   if (out.empty()) throw InputError(file, "no light", "lines \"ENERGY VX VY VZ\" with an energy above zero");
@@ -206,7 +208,8 @@ class Caribu {
       text_ += fmt::format("[ground]\nheight = {}\nreflectance = {}\n\n", plant.bounds().low.z, band_table(bands_, soil()));
     }
     text_ += fmt::format("[[plant]]\nname = {}\nfile = {}\nunit = \"{}\"\noptics = {{ {} }}\nplace = [ {{ position = [0, 0, 0] }} ]\n",
-                         toml_text(plant.name), toml_text(path_from(choice_.output, can_)), unit, keys);
+                         toml_text(choice_.soil && plant.name == "ground" ? "plants" : plant.name),
+                         toml_text(path_from(choice_.output, can_)), unit, keys);
     out_.text = std::move(text_);
     return std::move(out_);
   }

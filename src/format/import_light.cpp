@@ -1,8 +1,11 @@
 // Which sky a list of directions stands for.
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <numeric>
+#include <optional>
+#include <tuple>
 
 #include <fmt/format.h>
 
@@ -14,48 +17,59 @@ namespace sunfleck {
 namespace {
 
 constexpr std::size_t least_of_a_sky = 6;
-constexpr std::size_t most_of_a_sky = 5000;  // more would only cost time to compare
-constexpr double alike = 0.03;               // half the sum of differences of shares: CARIBU's own skies differ by .0005 to .018 from
-                                             // the model they stand for, and by .08 from the other
-constexpr int rings = 128, sectors = 256;
+constexpr std::size_t most_of_a_sky = 20000;  // more would only cost time to compare
+constexpr double alike = 0.03;                // half the sum of differences of shares: CARIBU's own skies differ by .0005 to .018 from
+                                              // the model they stand for, and by .08 from the other
+constexpr double sun_share = 1.0 / 3.0;       // of the irradiance: no cell of a sky of six or more directions has as much
 
-/// Half the sum of |share in the file - share of the Voronoi cell under the model|.
-double distance_to(const std::vector<LightDirection>& directions, const std::vector<std::size_t>& cell, SkyModel model) {
+/// Directions that cover the sky as evenly as the cells of a sky do, if they do: 3 times the radius of caps that would share the hemisphere
+/// leave no gap, nor 50 degrees. The suns of a day leave the other half of the sky empty.
+std::optional<SkyTable> cells_of_a_sky(const std::vector<LightDirection>& directions) {
+  if (directions.size() < least_of_a_sky || directions.size() > most_of_a_sky) return std::nullopt;
+  std::vector<Vec3> towards;
+  for (const auto& d : directions) towards.push_back(d.towards);
+  SkyTable table(std::move(towards), std::vector<double>(directions.size(), 1.0), "directions of the light");
+  const double widest = std::min(3 * std::sqrt(2.0 / static_cast<double>(directions.size())), 50 * std::numbers::pi / 180);
+  if (table.widest_gap() > widest) return std::nullopt;
+  const auto cells = table.cell_integrals([](const Vec3&) { return 1.0; });
+  if (*std::min_element(cells.begin(), cells.end()) <= 0) return std::nullopt;  // whose light would be lost
+  return table;
+}
+
+/// Half the sum of |share in the file - share of the cell under the model|.
+double distance_to(const std::vector<LightDirection>& directions, const SkyTable& table, SkyModel model) {
   Sky sky;
   sky.model = model;
-  std::vector<double> share(directions.size(), 0.0);
-  double total = 0, file_total = 0;
-  for (int i = 0; i < rings; ++i)
-    for (int j = 0; j < sectors; ++j) {
-      const double cosine = (i + 0.5) / rings;
-      const double light = sky.relative_radiance({std::sqrt(1 - cosine * cosine), 0, cosine}) * cosine;
-      share[cell[static_cast<std::size_t>(i * sectors + j)]] += light;
-      total += light;
-    }
+  const auto share = table.cell_integrals([&](const Vec3& d) { return sky.relative_radiance(d); });
+  const double total = std::accumulate(share.begin(), share.end(), 0.0);
+  double file_total = 0;
   for (const auto& d : directions) file_total += d.irradiance;
   double sum = 0;
   for (std::size_t i = 0; i < directions.size(); ++i) sum += std::fabs(share[i] / total - directions[i].irradiance / file_total);
   return 0.5 * sum;
 }
 
-/// The model that the directions stand for, if any.
-std::optional<SkyModel> sky_of(const std::vector<LightDirection>& directions) {
-  if (directions.size() < least_of_a_sky || directions.size() > most_of_a_sky) return std::nullopt;
-  std::vector<std::size_t> cell;
-  for (int i = 0; i < rings; ++i)
-    for (int j = 0; j < sectors; ++j) {
-      const double z = (i + 0.5) / rings, s = std::sqrt(1 - z * z), angle = 2 * std::numbers::pi * (j + 0.5) / sectors;
-      const Vec3 d{s * std::cos(angle), s * std::sin(angle), z};
-      std::size_t nearest = 0;
-      double best = -2;
-      for (std::size_t k = 0; k < directions.size(); ++k)
-        if (const double c = glm::dot(d, directions[k].towards); c > best) best = c, nearest = k;
-      cell.push_back(nearest);
-    }
-  const double uniform = distance_to(directions, cell, SkyModel::uniform);
-  const double overcast = distance_to(directions, cell, SkyModel::standard_overcast);
+/// The model that the cells of a sky have, if any.
+std::optional<SkyModel> model_of(const std::vector<LightDirection>& directions, const SkyTable& table) {
+  const double uniform = distance_to(directions, table, SkyModel::uniform);
+  const double overcast = distance_to(directions, table, SkyModel::standard_overcast);
   if (std::min(uniform, overcast) > alike) return std::nullopt;
   return uniform < overcast ? SkyModel::uniform : SkyModel::standard_overcast;
+}
+
+/// Lines of the same direction, to 1e-6, as one.
+std::vector<LightDirection> merged(const std::vector<LightDirection>& directions) {
+  std::map<std::tuple<long, long, long>, std::size_t> rows;
+  std::vector<LightDirection> out;
+  for (const auto& d : directions) {
+    const auto [at, fresh] =
+        rows.try_emplace({std::lround(1e6 * d.towards.x), std::lround(1e6 * d.towards.y), std::lround(1e6 * d.towards.z)}, out.size());
+    if (fresh)
+      out.push_back(d);
+    else
+      out[at->second].irradiance += d.irradiance;
+  }
+  return out;
 }
 
 std::vector<double> every_band(const std::vector<std::string>& bands, double value) {
@@ -70,36 +84,56 @@ std::string sun_values(const LightDirection& d, const std::vector<std::string>& 
 
 }  // namespace
 
-std::string light_tables(const std::vector<LightDirection>& directions, const std::vector<std::string>& bands, bool states,
+std::string light_tables(const std::vector<LightDirection>& lines, const std::vector<std::string>& bands, bool states,
                          std::vector<std::string>& notes) {
-  const auto horizontal = [](const std::vector<LightDirection>& list) {
-    return std::accumulate(list.begin(), list.end(), 0.0, [](double sum, const LightDirection& d) { return sum + d.irradiance; });
+  const auto directions = merged(lines);
+  const auto sky_table = [&](const std::string& model, const std::vector<LightDirection>& list) {
+    const double sum = std::accumulate(list.begin(), list.end(), 0.0, [](double e, const LightDirection& d) { return e + d.irradiance; });
+    return fmt::format("[sky]\nmodel = \"{}\"\nirradiance = {}\n", model, band_table(bands, every_band(bands, sum)));
   };
-  const auto sky_table = [&](SkyModel model, const std::vector<LightDirection>& list) {
-    return fmt::format("[sky]\nmodel = \"{}\"\nirradiance = {}\n", name_of(model), band_table(bands, every_band(bands, horizontal(list))));
+  /// Cells of the sky with the radiance that gives each the irradiance of its line.
+  const auto file_sky = [&](const SkyTable& table, const std::vector<LightDirection>& list) {
+    const auto cell = table.cell_integrals([](const Vec3&) { return 1.0; });
+    std::string text = sky_table("file", list) + "directions = [\n";
+    for (std::size_t i = 0; i < list.size(); ++i)
+      text += fmt::format("  [{}, {}, {}, {}],\n", list[i].towards.x, list[i].towards.y, list[i].towards.z,
+                          cell[i] > 0 ? list[i].irradiance / cell[i] : 0.0);
+    return text + "]\n";
   };
   if (!states) {
     if (directions.size() == 1) return "[sun]\n" + sun_values(directions[0], bands, "\n") + "\n";
-    if (const auto model = sky_of(directions)) {
+    const auto all = cells_of_a_sky(directions);
+    if (const auto model = all ? model_of(directions, *all) : std::nullopt) {
       notes.push_back(
           fmt::format("the {} directions of the light are those of a {} sky: that continuous sky takes their place (--light-states keeps "
                       "them apart)",
                       directions.size(), name_of(*model)));
-      return sky_table(*model, directions);
+      return sky_table(name_of(*model), directions);
     }
     // a sky and a sun: the sun's line is the brightest that leaves a sky behind
-    std::vector<std::size_t> brightest(directions.size());
-    std::iota(brightest.begin(), brightest.end(), std::size_t{0});
-    std::sort(brightest.begin(), brightest.end(), [&](auto a, auto b) { return directions[a].irradiance > directions[b].irradiance; });
-    for (std::size_t i = 0; i < std::min<std::size_t>(3, brightest.size()); ++i) {
+    std::vector<std::size_t> order(directions.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::sort(order.begin(), order.end(), [&](auto a, auto b) { return directions[a].irradiance > directions[b].irradiance; });
+    const double total =
+        std::accumulate(directions.begin(), directions.end(), 0.0, [](double e, const auto& d) { return e + d.irradiance; });
+    for (std::size_t i = 0; i < std::min<std::size_t>(3, order.size()); ++i) {
       auto rest = directions;
-      rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(brightest[i]));
-      const auto model = sky_of(rest);
-      if (!model) continue;
-      const auto& sun = directions[brightest[i]];
-      notes.push_back(fmt::format("line {} of the light is taken for the sun, the other {} for a {} sky (--light-states keeps all apart)",
-                                  sun.line, rest.size(), name_of(*model)));
-      return "[sun]\n" + sun_values(sun, bands, "\n") + "\n\n" + sky_table(*model, rest);
+      rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(order[i]));
+      const auto table = cells_of_a_sky(rest);
+      if (!table) continue;
+      const auto model = model_of(rest, *table);
+      const auto& sun = directions[order[i]];
+      if (!model && !(i == 0 && sun.irradiance > sun_share * total)) continue;
+      notes.push_back(fmt::format("line {} of the light is taken for the sun, the other {} for {} (--light-states keeps all apart)",
+                                  sun.line, rest.size(), model ? "a " + name_of(*model) + " sky" : "the cells of a sky"));
+      return "[sun]\n" + sun_values(sun, bands, "\n") + "\n\n" + (model ? sky_table(name_of(*model), rest) : file_sky(*table, rest));
+    }
+    if (all) {
+      notes.push_back(
+          fmt::format("the {} directions of the light are the cells of a sky: each shines from all of the sky that is nearest to it "
+                      "(--light-states keeps them apart)",
+                      directions.size()));
+      return file_sky(*all, directions);
     }
   }
   notes.push_back(

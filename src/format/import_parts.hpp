@@ -29,8 +29,8 @@ struct LightDirection {
   long line;
 };
 /// The light of a .light file as [sun], [sky] or [[state]] tables. Directions whose irradiances are those of their Voronoi cells under a
-/// uniform or a standard overcast sky, to 3 % in all, become that sky; one more than those, or a single one, the sun; else every
-/// direction is a state of one second with a sun of its own.
+/// uniform or a standard overcast sky, to 3 % in all, become that sky; others that cover the hemisphere evenly, a sky of those cells
+/// (model = "file"); one more than those, or a single one, the sun; else every direction is a state of one second with a sun of its own.
 std::string light_tables(const std::vector<LightDirection>& directions, const std::vector<std::string>& bands, bool states,
                          std::vector<std::string>& notes);
 

@@ -9,11 +9,12 @@
 #include <format/import_parts.hpp>
 #include <format/text.hpp>
 #include <sunfleck/core/error.hpp>
+#include <sunfleck/core/utf8.hpp>
 
 namespace sunfleck {
 
 std::string toml_text(const std::string& text) {
-  if (!is_utf8(text)) throw InputError(in_quotes(from_latin1(text)), "bytes that are no UTF-8", "a name in UTF-8, as scene files are");
+  if (!is_utf8(text)) throw InputError(in_quotes(text), "bytes that are no UTF-8", "a name in UTF-8, as scene files are");
   std::string out = "\"";
   for (const char c : text) {
     if (c == '"' || c == '\\') out += '\\';

@@ -11,9 +11,11 @@
 #include <fmt/format.h>
 
 #include <format/organs.hpp>
+#include <format/polygons.hpp>
 #include <format/text.hpp>
 #include <sunfleck/core/error.hpp>
 #include <sunfleck/core/input_file.hpp>
+#include <sunfleck/core/utf8.hpp>
 #include <sunfleck/plant/build.hpp>
 
 namespace sunfleck {
@@ -28,13 +30,20 @@ struct Part {
   std::string name;
 };
 
+/// A line of numbers that ends with a backslash goes on in the next one; a comment or a name may end so by chance.
+bool goes_on(std::string_view line) {
+  Words words(line);
+  const std::string_view key = words.next();
+  return (key.starts_with('v') || key == "f" || key == "l" || key == "p") && line.find('#') == std::string_view::npos;
+}
+
 class ObjReader {
  public:
   explicit ObjReader(const std::string& file) : file_(file) {}
 
   Plant read() {
-    const std::string text = read_whole(file_);
-    Lines lines(text, true);
+    const std::string text = read_text(file_, plant_.notes);
+    Lines lines(text, goes_on);
     std::string_view line;
     while (lines.next(line)) {
       number_ = lines.number();
@@ -51,7 +60,7 @@ class ObjReader {
       else if (key == "usemtl")
         material_ = material_index_(std::string(words.rest()));
       else if (key == "mtllib")
-        for (auto name = words.next(); !name.empty(); name = words.next()) check_inside(name);
+        outside_ += outside(words.rest());
       if (mesh_.vertices.size() >= none) fail("more than 4,294,967,294 vertices", "fewer");
     }
     for (const auto& [at, index] : ahead_)
@@ -59,6 +68,16 @@ class ObjReader {
         number_ = at;
         out_of_range(index + 1);
       }
+    for (const auto& face : late_) {
+      const auto& triangles = cutter_.cut(mesh_.vertices, face.corners, file_, face.line);
+      std::copy(triangles.begin(), triangles.end(), mesh_.triangles.begin() + static_cast<std::ptrdiff_t>(face.first_triangle));
+    }
+    cutter_.note(file_, plant_.notes);
+    if (outside_ > 0)
+      plant_.notes.push_back(
+          fmt::format("{}: mtllib names {} outside the folder of the OBJ: material libraries are not needed, and none is "
+                      "opened",
+                      file_, outside_ == 1 ? "a file" : fmt::format("{} files", outside_)));
     build();
     return std::move(plant_);
   }
@@ -89,11 +108,15 @@ class ObjReader {
     for (auto word = words.next(); !word.empty() && word[0] != '#'; word = words.next()) corners_.push_back(corner(word));
     if (corners_.size() < 3) fail(fmt::format("a face with {} corners", corners_.size()), "at least three");
     if (part_ == none) part_ = part_number({object_, group_});
-    for (std::size_t k = 2; k < corners_.size(); ++k) {
-      mesh_.triangles.push_back({corners_[0], corners_[k - 1], corners_[k]});
-      owner_.push_back(part_);
-      materials_.push_back(material_);
+    const auto last = *std::max_element(corners_.begin(), corners_.end());
+    if (last < mesh_.vertices.size()) {
+      for (const auto& t : cutter_.cut(mesh_.vertices, corners_, file_, number_)) mesh_.triangles.push_back(t);
+    } else {  // cut where all its vertices are known
+      late_.push_back({number_, mesh_.triangles.size(), corners_});
+      mesh_.triangles.resize(mesh_.triangles.size() + corners_.size() - 2);
     }
+    owner_.resize(mesh_.triangles.size(), part_);
+    materials_.resize(owner_.size(), material_);
   }
 
   void open_group(std::string_view name) {
@@ -118,13 +141,18 @@ class ObjReader {
     return at->second;
   }
 
-  /// A material library is never opened, but a scene that asks for one elsewhere is refused all the same.
-  void check_inside(std::string_view name) const {
-    const std::filesystem::path path(name);
-    const auto relative = path.lexically_normal();
-    if (path.is_absolute() || (!relative.empty() && *relative.begin() == ".."))
-      throw InputError(location(file_, number_, "mtllib"), in_quotes(name), "a file in the folder of the OBJ or below");
-    InputRecord::note((std::filesystem::path(file_).parent_path() / path).string());
+  /// Notes the material libraries that a line names, which no output may replace. Whether one of them lies elsewhere: a name may have blanks,
+  /// or several be separated by them, so that a word which leaves the folder tells.
+  bool outside(std::string_view names) const {
+    bool elsewhere = false;
+    Words words(names);
+    for (auto name = words.next(); !name.empty(); name = words.next()) {
+      const std::filesystem::path path(name);
+      const auto relative = path.lexically_normal();
+      InputRecord::note((std::filesystem::path(file_).parent_path() / path).string());
+      elsewhere = elsewhere || path.is_absolute() || (!relative.empty() && *relative.begin() == "..");
+    }
+    return elsewhere;
   }
 
   void build() {
@@ -165,11 +193,14 @@ class ObjReader {
 
   const std::string& file_;
   long number_ = 0;
-  Plant plant_ = empty_plant(std::filesystem::path(file_).stem().string(), file_);
+  Plant plant_ = empty_plant(clean_name(std::filesystem::path(file_).stem().string()), file_);
   NameIndex material_index_{plant_.materials};
   Mesh mesh_;
   std::vector<std::uint32_t> owner_, materials_, corners_;
   std::vector<std::pair<long, std::int64_t>> ahead_;
+  std::vector<LateFace> late_;
+  PolygonCutter cutter_;
+  std::size_t outside_ = 0;  ///< lines that name material libraries elsewhere
   std::vector<std::string> objects_;
   std::unordered_map<std::string, std::uint32_t> object_index_, part_index_;
   std::vector<Part> parts_;

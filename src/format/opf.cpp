@@ -8,6 +8,7 @@
 #include <cctype>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <tuple>
 #include <unordered_map>
 #include <utility>
@@ -16,7 +17,9 @@
 #include <fmt/format.h>
 #include <pugixml.hpp>
 
+#include <format/polygons.hpp>
 #include <format/text.hpp>
+#include <format/xml_text.hpp>
 #include <sunfleck/core/error.hpp>
 
 namespace sunfleck {
@@ -87,16 +90,56 @@ Mat3 axis_frame(const Mat3& map) {
   return {x, glm::determinant(map) < 0 ? -y : y, z};
 }
 
+/// What programs write where a structure has no such value: R, Julia, Python, JSON and spreadsheets.
+bool says_nothing(std::string_view word) {
+  std::string lower(word);
+  std::transform(lower.begin(), lower.end(), lower.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  for (const auto nothing : {"", "na", "nan", "missing", "null", "none", "nothing", "undefined", "n/a", "-"})
+    if (lower == nothing) return true;
+  return false;
+}
+
+/// A value as its class has it; "3.0" is a whole number too. Nothing where it is none.
+std::optional<AttributeValue> value_of(std::string_view word, Kind kind) {
+  bool truth = false;
+  double number = 0;
+  std::int64_t whole = 0;
+  if ((kind == Kind::boolean || kind == Kind::unknown) && to_boolean(word, truth)) return truth;
+  if (kind == Kind::boolean && (word == "0" || word == "1")) return word == "1";
+  if ((kind == Kind::integer || kind == Kind::unknown) && to_integer(word, whole)) return whole;
+  if (kind != Kind::boolean && kind != Kind::text && to_number(word, number)) {
+    if (kind == Kind::integer && std::abs(number) < 9e18 && number == std::floor(number)) return static_cast<std::int64_t>(number);
+    if (kind != Kind::integer && std::isfinite(number)) return number;
+    return std::nullopt;
+  }
+  if (kind == Kind::text || kind == Kind::unknown) return std::string(word);
+  return std::nullopt;
+}
+
+/// Values of one attribute that its class does not allow.
+struct LeftOut {
+  std::size_t count = 0;
+  std::string example;
+  long line = 0;
+
+  std::string note(const std::string& file, const std::string& attribute, Kind kind) const {
+    const char* expected = kind == Kind::boolean ? "true or false" : kind == Kind::integer ? "a whole number" : "a finite number";
+    return fmt::format("{}: {} ({}) is not {}: left out{}", location(file, line, attribute), example,
+                       kind == Kind::unknown ? "of no class" : "by its class in attributeBDD", expected,
+                       count > 1 ? fmt::format(", as are {} more of this attribute", count - 1) : "");
+  }
+};
+
 class OpfReader {
  public:
   explicit OpfReader(const std::string& file) : file_(file) {}
 
   Plant read() {
-    std::string text = read_whole(file_);
+    std::string text = read_xml(file_, plant_.notes);
     bytes_ = text.size();
     for (std::size_t at = text.find('\n'); at != std::string::npos; at = text.find('\n', at + 1)) line_ends_.push_back(at);
     pugi::xml_document document;
-    const auto result = document.load_buffer_inplace(text.data(), text.size());
+    const auto result = document.load_buffer_inplace(text.data(), text.size(), pugi::parse_default, pugi::encoding_utf8);
     if (!result)
       throw InputError(location(file_, line_at(result.offset)), fmt::format("broken XML ({})", result.description()), "well-formed XML");
     const auto root = document.document_element();
@@ -111,6 +154,8 @@ class OpfReader {
     read_topology(topology);
     plant_.name = plant_.structures[0].name;
     drop_unused_meshes();
+    cutter_.note(file_, plant_.notes);
+    for (const auto& [what, left_out] : left_out_) plant_.notes.push_back(left_out.note(file_, what.first, what.second));
     check_plant(plant_);
     return std::move(plant_);
   }
@@ -153,10 +198,11 @@ class OpfReader {
     const auto node = geometry.child(key);
     if (!node) return 1.0;
     const std::string_view word = trimmed_text(node);
+    if (!word.empty() && says_nothing(word)) return 1.0;
     double value = 0;
     if (!to_number(word, value) || std::isinf(value))
       fail(node, word.empty() ? "nothing" : in_quotes(word), "a finite number, or NaN for none");
-    return std::isnan(value) ? 1.0 : value;
+    return value;
   }
 
   static std::string_view trimmed_text(pugi::xml_node node) {
@@ -182,7 +228,7 @@ class OpfReader {
     }
   }
 
-  void read_faces(pugi::xml_node mesh_node, Mesh& mesh) const {
+  void read_faces(pugi::xml_node mesh_node, Mesh& mesh) {
     const auto faces = mesh_node.child("faces");
     if (!faces) fail(mesh_node, "no <faces>", "a list of faces");
     std::vector<std::uint32_t> corners;
@@ -206,7 +252,8 @@ class OpfReader {
     for (const auto face : faces.children("face")) {
       read_corners(face);
       if (corners.size() < 3) fail(face, fmt::format("a face with {} corners", corners.size()), "at least three");
-      for (std::size_t k = 2; k < corners.size(); ++k) mesh.triangles.push_back({corners[0], corners[k - 1], corners[k]});
+      const long line = corners.size() > 3 ? line_at(face.offset_debug()) : 0;
+      for (const auto& t : cutter_.cut(mesh.vertices, corners, file_, line)) mesh.triangles.push_back(t);
     }
   }
 
@@ -268,43 +315,35 @@ class OpfReader {
     std::string& name = plant_.structures[structure].name;
     name = node.attribute("class").value();
     for (const auto key : {"scale", "id"})
-      if (node.attribute(key)) {
-        const std::int64_t value = id_of(node, key);
-        attributes.emplace_back(attribute_index_(key), value);
-        if (key[0] == 'i') name += fmt::format("_{}", value);
+      if (const auto given = node.attribute(key)) {
+        const auto value = value_of(trimmed(given.value()), Kind::integer);
+        if (!value) {
+          leave_out(node, key, Kind::integer, given.value());
+          continue;
+        }
+        attributes.emplace_back(attribute_index_(key), *value);
+        if (key[0] == 'i') name += fmt::format("_{}", std::get<std::int64_t>(*value));
       }
     if (plant_.structures[structure].parent != no_parent) attributes.emplace_back(attribute_index_("link"), std::string(node.name()));
   }
 
-  /// "NA", "NaN" and an empty element mean that the plant has no such value: the attribute is left out.
+  /// An attribute that its class does not allow is left out with a note: light does not need it.
   void add_attribute(pugi::xml_node node, std::uint32_t structure) {
     const std::string_view word = trimmed_text(node);
     const std::string name = node.name();
     const auto listed = kinds_.find(name);
     const Kind kind = listed == kinds_.end() ? Kind::unknown : listed->second;
-    if (word.empty() || (word == "NA" && kind != Kind::text)) return;
-    AttributeValue value;
-    bool truth = false;
-    double number = 0;
-    std::int64_t whole = 0;
-    if ((kind == Kind::boolean || kind == Kind::unknown) && to_boolean(word, truth)) {
-      value = truth;
-    } else if ((kind == Kind::integer || kind == Kind::unknown) && to_integer(word, whole)) {
-      value = whole;
-    } else if ((kind == Kind::number || kind == Kind::unknown) && to_number(word, number)) {
-      if (std::isnan(number)) return;
-      if (std::isinf(number)) fail(node, in_quotes(word), "a finite number");
-      value = number;
-    } else if (kind == Kind::text || kind == Kind::unknown) {
-      value = std::string(word);
-      if (name == "Name") plant_.structures[structure].name = word;
-    } else {
-      fail(node, in_quotes(word),
-           kind == Kind::boolean   ? "true or false (class Boolean in attributeBDD)"
-           : kind == Kind::integer ? "a whole number (class Integer in attributeBDD)"
-                                   : "a number (its class in attributeBDD)");
-    }
-    plant_.structures[structure].attributes.emplace_back(attribute_index_(name), std::move(value));
+    if (kind != Kind::text && says_nothing(word)) return;
+    if (word.empty()) return;
+    auto value = value_of(word, kind);
+    if (!value) return leave_out(node, name, kind, word);
+    if (name == "Name" && std::holds_alternative<std::string>(*value)) plant_.structures[structure].name = word;
+    plant_.structures[structure].attributes.emplace_back(attribute_index_(name), std::move(*value));
+  }
+
+  void leave_out(pugi::xml_node node, const std::string& name, Kind kind, std::string_view word) {
+    auto& left_out = left_out_[{name, kind}];
+    if (left_out.count++ == 0) left_out.example = in_quotes(word), left_out.line = line_at(node.offset_debug());
   }
 
   void add_geometry(pugi::xml_node geometry, std::uint32_t structure) {
@@ -379,14 +418,23 @@ class OpfReader {
 
   const std::string& file_;
   std::vector<std::size_t> line_ends_;
-  Plant plant_ = {
-      .name = {}, .file = file_, .types = {}, .attribute_names = {}, .materials = {}, .structures = {}, .meshes = {}, .shapes = {}};
+  Plant plant_ = {.name = {},
+                  .file = file_,
+                  .types = {},
+                  .attribute_names = {},
+                  .materials = {},
+                  .structures = {},
+                  .meshes = {},
+                  .shapes = {},
+                  .notes = {}};
   NameIndex type_index_{plant_.types}, attribute_index_{plant_.attribute_names}, material_index_{plant_.materials};
   std::unordered_map<std::int64_t, OpfMesh> meshes_;
   std::unordered_map<std::int64_t, OpfShape> shapes_;
   std::unordered_map<std::int64_t, std::string> material_names_;
   std::unordered_map<std::string, Kind> kinds_;
   std::map<std::tuple<std::uint32_t, double, double>, std::uint32_t> tapered_;
+  std::map<std::pair<std::string, Kind>, LeftOut> left_out_;
+  PolygonCutter cutter_;
   std::size_t bytes_ = 0, tapered_points_ = 0;
 };
 

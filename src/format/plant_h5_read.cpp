@@ -1,6 +1,8 @@
 // Nothing that the file says about itself is believed: sizes are held against the bytes stored before memory is taken.
 #include <sunfleck/format/read_plant.hpp>
 
+#include <unistd.h>
+
 #include <limits>
 #include <type_traits>
 #include <utility>
@@ -39,9 +41,10 @@ class PlantReader {
 
   Plant read() {
     check_readable(path_);
+    if (::access(path_.c_str(), R_OK) != 0) throw InputError(path_, "a file that cannot be opened", "permission to read it");
     if (H5Fis_hdf5(path_.c_str()) <= 0) throw InputError(path_, "no HDF5 file", "a plant written by sunfleck");
     file_ = h5::Id(H5Fopen(path_.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT));
-    if (!file_) throw InputError(path_, "a broken HDF5 file", "a plant written by sunfleck");
+    if (!file_) throw InputError(path_, "a damaged HDF5 file, perhaps cut short", "a whole file written by sunfleck");
     check_format();
     Plant plant;
     plant.file = path_;
@@ -85,6 +88,8 @@ class PlantReader {
     std::int64_t version = 0;
     if (!space || H5Sget_simple_extent_npoints(space.get()) != 1 || H5Aread(attribute.get(), H5T_NATIVE_INT64, &version) < 0)
       fail("format_version", "no number", fmt::format("{}", format_version));
+    if (version > format_version)
+      fail("format_version", fmt::format("{}", version), fmt::format("{}: this program is older than the file", format_version));
     if (version != format_version) fail("format_version", fmt::format("{}", version), fmt::format("{}", format_version));
   }
 

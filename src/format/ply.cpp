@@ -14,8 +14,10 @@
 #include <fmt/format.h>
 
 #include <format/organs.hpp>
+#include <format/polygons.hpp>
 #include <format/text.hpp>
 #include <sunfleck/core/error.hpp>
+#include <sunfleck/core/utf8.hpp>
 #include <sunfleck/plant/build.hpp>
 
 namespace sunfleck {
@@ -79,7 +81,7 @@ double decoded(const char* from, bool swap) {
 
 class PlyReader {
  public:
-  explicit PlyReader(const std::string& file) : file_(file), bytes_(read_whole(file)), lines_(bytes_) {}
+  explicit PlyReader(const std::string& file) : file_(file), bytes_(without_mark(read_whole(file), file)), lines_(bytes_) {}
 
   Plant read() {
     read_header();
@@ -299,13 +301,18 @@ class PlyReader {
           fail(fmt::format("vertex index {} in face {}", index, i), fmt::format("0 to {}", static_cast<std::int64_t>(vertex_count_) - 1));
       std::uint32_t owner = 0;
       if (has_organs_) owner = organ_number(scalars_[organ], i);
-      for (std::size_t k = 2; k < list_.size(); ++k) {
-        mesh_.triangles.push_back(
-            {static_cast<std::uint32_t>(list_[0]), static_cast<std::uint32_t>(list_[k - 1]), static_cast<std::uint32_t>(list_[k])});
-        owner_.push_back(owner);
+      corners_.assign(list_.begin(), list_.end());
+      if (mesh_.vertices.size() == vertex_count_) {
+        for (const auto& t : cutter_.cut(mesh_.vertices, corners_, file_, line_of_face())) mesh_.triangles.push_back(t);
+      } else {  // faces before vertices: cut where these are known
+        late_.push_back({line_of_face(), mesh_.triangles.size(), corners_});
+        mesh_.triangles.resize(mesh_.triangles.size() + corners_.size() - 2);
       }
+      owner_.resize(mesh_.triangles.size(), owner);
     }
   }
+
+  long line_of_face() const { return encoding_ == Encoding::ascii ? lines_.number() : 0; }
 
   std::uint32_t organ_number(double value, std::uint64_t face) {
     if (value != std::floor(value) || !(std::abs(value) < 9e15)) fail(fmt::format("organ {} of face {}", value, face), "a whole number");
@@ -315,6 +322,11 @@ class PlyReader {
   }
 
   void build() {
+    for (const auto& face : late_) {
+      const auto& triangles = cutter_.cut(mesh_.vertices, face.corners, file_, face.line);
+      std::copy(triangles.begin(), triangles.end(), mesh_.triangles.begin() + static_cast<std::ptrdiff_t>(face.first_triangle));
+    }
+    cutter_.note(file_, plant_.notes);
     if (!has_organs_) {
       owner_ = connected_components(mesh_);
       const std::uint32_t count = owner_.empty() ? 0 : *std::max_element(owner_.begin(), owner_.end()) + 1;
@@ -338,9 +350,11 @@ class PlyReader {
   std::vector<Element> elements_;
   std::uint64_t vertex_count_ = 0;
   std::vector<double> scalars_, list_;
-  Plant plant_ = empty_plant(std::filesystem::path(file_).stem().string(), file_);
+  Plant plant_ = empty_plant(clean_name(std::filesystem::path(file_).stem().string()), file_);
   Mesh mesh_;
-  std::vector<std::uint32_t> owner_;
+  PolygonCutter cutter_;
+  std::vector<LateFace> late_;
+  std::vector<std::uint32_t> owner_, corners_;
   std::vector<std::string> organ_names_;
   std::unordered_map<std::int64_t, std::uint32_t> organ_index_;
 };

@@ -15,10 +15,8 @@ namespace sunfleck {
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
 double strength_value(const TomlValue& value) {
-  return value.number(0, infinity);
+  return value.number(0, brightest);
 }
 
 Vec3 vector(const TomlValue& value, const char* names) {
@@ -151,7 +149,7 @@ SensorProfile read_profile(const TomlValue& table) {
   return profile;
 }
 
-SensorEntry read_sensor(const TomlValue& table, const Scene& scene) {
+SensorEntry read_sensor(const TomlValue& table, Scene& scene) {
   SensorEntry sensor;
   sensor.name = table.need("name", "a name, under which the result keeps it").text();
   const auto grid = table.get("grid"), mesh = table.get("mesh"), profile = table.get("profile"), unit = table.get("unit");
@@ -160,7 +158,7 @@ SensorEntry read_sensor(const TomlValue& table, const Scene& scene) {
   if (unit && !mesh) unit->fail("`unit` without `mesh`", "no unit: lengths of the scene are metres");
   if (grid) sensor.shape = read_sensor_grid(*grid);
   if (profile) sensor.shape = read_profile(*profile);
-  if (mesh) sensor.shape = read_flat_mesh(read_path(*mesh, scene, "a mesh file"), read_unit(table));
+  if (mesh) sensor.shape = read_flat_mesh(read_path(*mesh, scene, "a mesh file"), read_unit(table), scene.notes);
   sensor.both_sides = profile.has_value();
   if (const auto sides = table.get("sides")) {
     if (profile) sides->fail("`sides` of a profile", "no `sides`: it has both");
@@ -197,7 +195,7 @@ void read_lamps(const TomlValue& root, Scene& scene) {
     if (ies)
       lamp.photometry = std::make_shared<const Photometry>(read_ies(read_path(*ies, scene, "a photometric file (IES LM-63)")));
     else
-      lamp.mesh = read_flat_mesh(read_path(*mesh, scene, "a mesh file"), read_unit(table));
+      lamp.mesh = read_flat_mesh(read_path(*mesh, scene, "a mesh file"), read_unit(table), scene.notes);
     read_lamp_strength(table, scene, lamp);
     lamp.placements = lamp_placements(table, scene, ies.has_value());
     read_lamp_states(table, scene, lamp);

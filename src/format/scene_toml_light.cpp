@@ -17,11 +17,10 @@ namespace sunfleck {
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double degree = 3.14159265358979323846 / 180.0;
 
 double irradiance_value(const TomlValue& value) {
-  return value.number(0, infinity);
+  return value.number(0, brightest);
 }
 
 /// Where the sun stands, also below the horizon.
@@ -69,7 +68,7 @@ Shares split(const TomlValue& global, const SunPosition& sun, Scene& scene) {
       read_per_band(global.need("irradiance", "the global irradiance per band, on a horizontal plane"), scene, irradiance_value);
   double shortwave = 0;
   if (const auto given = global.get("shortwave")) {
-    shortwave = given->number(0, infinity, "W m^-2");
+    shortwave = given->number(0, brightest, "W m^-2");
   } else {
     for (std::size_t b = 0; b < per_band.size(); ++b) {
       if (scene.band_units[b] != "W m^-2")
@@ -104,9 +103,13 @@ std::optional<Sky> read_sky(const TomlValue& table, const Scene& scene, const st
   Sky sky;
   const auto model = table.need("model", "one of " + joined(sky_model_names()));
   const std::string name = model.text();
-  if (name == "perez" || name == "file")
-    model.fail('"' + name + "\", which this version does not support", "one of " + joined(sky_model_names()));
+  if (name == "perez") model.fail('"' + name + "\", which this version does not support", "one of " + joined(sky_model_names()));
   sky.model = *sky_model_from_name(model.one_of(sky_model_names()));
+  if (sky.model == SkyModel::file)
+    sky.table = read_sky_table(table, scene);
+  else
+    for (const char* key : {"file", "directions"})
+      if (const auto value = table.get(key)) value->fail(fmt::format("`{}` beside model = \"{}\"", key, name), "model = \"file\"");
   if (shares) {
     if (const auto irradiance = table.get("irradiance"))
       irradiance->fail("`irradiance` beside `global`", "one of them: `global` is split into sun and sky");
@@ -161,9 +164,6 @@ TomlSchema sun_schema(const TomlSchema& per_band) {
   return TomlSchema::of({"direction", "elevation", "azimuth", "latitude", "longitude", "time", "altitude", "angular_diameter"},
                         {{"irradiance", per_band}});
 }
-TomlSchema sky_schema(const TomlSchema& per_band) {
-  return TomlSchema::of({"model"}, {{"irradiance", per_band}});
-}
 TomlSchema global_schema(const TomlSchema& per_band) {
   return TomlSchema::of({"shortwave", "day"}, {{"irradiance", per_band}});
 }
@@ -187,7 +187,7 @@ void read_light(const TomlValue& root, Scene& scene) {
     state.name = name ? name->text() : fmt::format("state {}", scene.states.size() + 1);
     if (!seen.insert(state.name).second)
       (name ? *name : table).fail(fmt::format("the name \"{}\" twice", state.name), "a name for every state");
-    if (const auto duration = table.get("duration_s")) state.duration_s = duration->number(0, infinity, "seconds");
+    if (const auto duration = table.get("duration_s")) state.duration_s = duration->number(0, longest_duration_s, "seconds");
     scene.states.push_back(std::move(state));
   }
   if (scene.states.empty()) states->fail("at least one state");

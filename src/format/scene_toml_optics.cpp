@@ -49,8 +49,9 @@ void read_ground_plane(const TomlValue& table, const Scene& scene, Ground& groun
 
 }  // namespace
 
-Mesh read_flat_mesh(const std::string& file, double unit_m) {
+Mesh read_flat_mesh(const std::string& file, double unit_m, std::vector<std::string>& notes) {
   const Plant plant = read_plant(file, unit_m);
+  notes.insert(notes.end(), plant.notes.begin(), plant.notes.end());
   check_plant(plant);
   Mesh mesh;
   for (const auto& shape : plant.shapes)
@@ -115,7 +116,7 @@ void read_ground(const TomlValue& root, Scene& scene) {
   if (const auto mesh = table->get("mesh")) {
     for (const char* key : {"size", "center", "cells", "height"})
       if (const auto value = table->get(key)) value->fail(fmt::format("`{}` beside `mesh`", key), "one of them: the mesh has its own");
-    ground.mesh = read_flat_mesh(read_path(*mesh, scene, "a mesh file"), read_unit(*table));
+    ground.mesh = read_flat_mesh(read_path(*mesh, scene, "a mesh file"), read_unit(*table), scene.notes);
   } else {
     if (const auto unit = table->get("unit")) unit->fail("`unit` without `mesh`", "no unit: lengths of the scene are metres");
     read_ground_plane(*table, scene, ground);

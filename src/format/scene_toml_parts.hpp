@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -20,18 +21,22 @@ std::string read_path(const TomlValue& value, const Scene& scene, const std::str
 
 // scene_toml_light.cpp
 TomlSchema sun_schema(const TomlSchema& per_band);
-TomlSchema sky_schema(const TomlSchema& per_band);
 TomlSchema global_schema(const TomlSchema& per_band);
 /// [sun], [sky], [global] or [[state]] -> Scene::states.
 void read_light(const TomlValue& root, Scene& scene);
+
+// scene_toml_sky.cpp
+TomlSchema sky_schema(const TomlSchema& per_band);
+/// The directions and radiances that a sky of model = "file" has.
+std::shared_ptr<const SkyTable> read_sky_table(const TomlValue& sky, const Scene& scene);
 
 // scene_toml_optics.cpp
 TomlSchema optics_schema(const TomlSchema& per_band);
 TomlSchema ground_schema(const TomlSchema& per_band);
 void read_optics(const TomlValue& root, Scene& scene);
 void read_ground(const TomlValue& root, Scene& scene);
-/// All faces of a mesh file as one mesh, in their order.
-Mesh read_flat_mesh(const std::string& file, double unit_m);
+/// All faces of a mesh file as one mesh, in their order; what its reader noted is appended.
+Mesh read_flat_mesh(const std::string& file, double unit_m, std::vector<std::string>& notes);
 
 // scene_toml_placements.cpp
 /// Keys of one placement: position, turn, scale, tilt, tilt_azimuth, mirror, grid, file.

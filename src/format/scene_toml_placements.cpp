@@ -31,16 +31,6 @@ Stance read_stance(const TomlValue& table) {
 
 const std::vector<std::string> csv_columns{"x", "y", "z", "turn", "scale", "tilt", "tilt_azimuth", "mirror"};
 
-std::vector<std::string_view> cells_of(std::string_view line) {
-  std::vector<std::string_view> cells;
-  while (true) {
-    const auto comma = line.find(',');
-    cells.push_back(Words(line.substr(0, comma)).rest());
-    if (comma == std::string_view::npos) return cells;
-    line.remove_prefix(comma + 1);
-  }
-}
-
 /// Names of the columns from a header, or x, y, z, turn, scale where the first line holds numbers.
 std::vector<std::size_t> read_header(const std::vector<std::string_view>& cells, const std::string& where, bool& is_header) {
   double ignored = 0;
@@ -68,7 +58,8 @@ std::vector<std::size_t> read_header(const std::vector<std::string_view>& cells,
 }
 
 std::vector<Placement> read_positions(const std::string& file) {
-  const std::string text = read_whole(file);
+  std::vector<std::string> ignored;  // comments, of which nothing is kept
+  const std::string text = read_text(file, ignored);
   Lines lines(text);
   std::string_view line;
   std::vector<std::size_t> columns;

@@ -26,7 +26,7 @@ using PlantKey = std::tuple<std::string, double, std::optional<double>, std::opt
 /// A plant that several entries name is read or grown once.
 using PlantCache = std::map<PlantKey, std::shared_ptr<const Plant>>;
 
-std::shared_ptr<const Plant> read_shared(const TomlValue& table, const Scene& scene, PlantCache& cache) {
+std::shared_ptr<const Plant> read_shared(const TomlValue& table, Scene& scene, PlantCache& cache) {
   const std::string file = read_path(table.need("file", "the plant's file"), scene, "a plant file");
   const bool is_species = std::filesystem::path(file).extension() == ".toml";
   const auto age = table.get("age"), seed = table.get("seed"), unit = table.get("unit");
@@ -42,6 +42,7 @@ std::shared_ptr<const Plant> read_shared(const TomlValue& table, const Scene& sc
   if (!plant) {
     auto read = is_species ? read_species_plant(file, std::get<2>(key), std::get<3>(key)) : read_plant(file, std::get<1>(key));
     check_plant(read);
+    scene.notes.insert(scene.notes.end(), read.notes.begin(), read.notes.end());
     plant = std::make_shared<const Plant>(std::move(read));
   }
   return plant;

@@ -246,6 +246,10 @@ CerealGrowth read_cereal(const TomlValue& root) {
 
 }  // namespace
 
+bool is_species(const std::string& file) {
+  return TomlDocument(file).root().has("program");
+}
+
 Species read_species(const std::string& file) {
   const TomlDocument document(file);
   const TomlValue root = document.root();

@@ -1,11 +1,15 @@
 #include <format/text.hpp>
 
+#include <iconv.h>
+
+#include <cerrno>
 #include <charconv>
 
 #include <fmt/format.h>
 
 #include <sunfleck/core/error.hpp>
 #include <sunfleck/core/input_file.hpp>
+#include <sunfleck/core/utf8.hpp>
 
 namespace sunfleck {
 
@@ -23,34 +27,44 @@ std::string read_whole(const std::string& file) {
   return read_input_file(file);
 }
 
-bool is_utf8(std::string_view bytes) {
-  for (std::size_t i = 0; i < bytes.size();) {
-    const auto byte = [&](std::size_t k) { return i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0u; };
-    const unsigned lead = byte(0), second = byte(1);
-    const std::size_t length = lead < 0x80 ? 1 : lead < 0xC2 ? 0 : lead < 0xE0 ? 2 : lead < 0xF0 ? 3 : lead < 0xF5 ? 4 : 0;
-    if (length == 0) return false;
-    for (std::size_t k = 1; k < length; ++k)
-      if ((byte(k) & 0xC0) != 0x80) return false;
-    if ((lead == 0xE0 && second < 0xA0) || (lead == 0xED && second > 0x9F) || (lead == 0xF0 && second < 0x90) ||
-        (lead == 0xF4 && second > 0x8F))
-      return false;
-    i += length;
-  }
-  return true;
+std::string from_charset(std::string_view bytes, const std::string& charset, const std::string& where) {
+  const std::string known = "UTF-8, UTF-16, ISO-8859-1, windows-1252, or another that iconv knows";
+  const iconv_t converter = iconv_open("UTF-8", charset.c_str());
+  if (converter == reinterpret_cast<iconv_t>(-1)) throw InputError(where, "text in the character set " + in_quotes(charset), known);
+  std::string out, chunk(1 << 16, '\0');
+  char* from = const_cast<char*>(bytes.data());  // iconv writes nothing there
+  std::size_t left = bytes.size(), result = 0;
+  do {
+    char* to = chunk.data();
+    std::size_t room = chunk.size();
+    result = iconv(converter, &from, &left, &to, &room);
+    out.append(chunk.data(), chunk.size() - room);
+  } while (result == static_cast<std::size_t>(-1) && errno == E2BIG);
+  iconv_close(converter);
+  if (result == static_cast<std::size_t>(-1))
+    throw InputError(where, fmt::format("bytes that are no {} (at byte {})", charset, bytes.size() - left), "text in that character set");
+  return out;
 }
 
-std::string from_latin1(std::string_view bytes) {
-  std::string out;
-  for (const char c : bytes) {
-    const auto code = static_cast<unsigned char>(c);
-    if (code < 0x80) {
-      out += c;
-    } else {
-      out += static_cast<char>(0xC0 | (code >> 6));
-      out += static_cast<char>(0x80 | (code & 0x3F));
-    }
-  }
-  return out;
+std::string without_mark(std::string bytes, const std::string& file) {
+  const auto begins = [&](std::string_view mark) { return std::string_view(bytes).starts_with(mark); };
+  using namespace std::string_view_literals;
+  if (begins("\xEF\xBB\xBF"sv)) return bytes.erase(0, 3);
+  if (begins("\xFF\xFE\0\0"sv) || begins("\0\0\xFE\xFF"sv))
+    return from_charset(std::string_view(bytes).substr(4), bytes[0] == 0 ? "UTF-32BE" : "UTF-32LE", file);
+  if (begins("\xFF\xFE"sv) || begins("\xFE\xFF"sv))
+    return from_charset(std::string_view(bytes).substr(2), begins("\xFE"sv) ? "UTF-16BE" : "UTF-16LE", file);
+  if (bytes.size() < 4 || bytes.size() % 2 != 0 || (bytes[0] == 0) == (bytes[1] == 0) || (bytes[0] == 0) != (bytes[2] == 0) ||
+      (bytes[1] == 0) != (bytes[3] == 0))
+    return bytes;
+  return from_charset(bytes, bytes[0] == 0 ? "UTF-16BE" : "UTF-16LE", file);
+}
+
+std::string read_text(const std::string& file, std::vector<std::string>& notes) {
+  std::string text = without_mark(read_whole(file), file);
+  if (is_utf8(text)) return text;
+  notes.push_back(fmt::format("{}: its text is no UTF-8 and is taken for Windows-1252 (Latin-1)", file));
+  return from_windows_1252(text);
 }
 
 bool Lines::raw(std::string_view& line) {
@@ -66,13 +80,13 @@ bool Lines::raw(std::string_view& line) {
 bool Lines::next(std::string_view& line) {
   if (!raw(line)) return false;
   first_ = line_;
-  if (!join_ || line.empty() || line.back() != '\\') return true;
+  if (!continues_ || !line.ends_with('\\') || !continues_(line)) return true;
   joined_.clear();
   do {
     line.remove_suffix(1);
     joined_.append(line).push_back(' ');
     if (!raw(line)) line = {};
-  } while (!line.empty() && line.back() == '\\');
+  } while (line.ends_with('\\') && line.find('#') == std::string_view::npos);  // no comment goes on
   joined_.append(line);
   line = joined_;
   return true;
@@ -91,6 +105,16 @@ std::string_view Words::rest() {
   const std::size_t begin = rest_.find_first_not_of(blanks);
   if (begin == std::string_view::npos) return rest_ = {};
   return rest_.substr(begin, rest_.find_last_not_of(blanks) + 1 - begin);
+}
+
+std::vector<std::string_view> cells_of(std::string_view line) {
+  std::vector<std::string_view> cells;
+  while (true) {
+    const auto comma = line.find(',');
+    cells.push_back(Words(line.substr(0, comma)).rest());
+    if (comma == std::string_view::npos) return cells;
+    line.remove_prefix(comma + 1);
+  }
 }
 
 bool to_number(std::string_view word, double& value) {
@@ -126,9 +150,12 @@ Vec3 read_point(Words& words, const std::string& file, long line, const char* wh
 
 std::string in_quotes(std::string_view word) {
   constexpr std::size_t longest = 40;
+  const bool whole = word.size() <= longest;
+  std::size_t end = whole ? word.size() : longest;
+  for (int back = 0; !whole && back < 3 && (static_cast<unsigned char>(word[end]) & 0xC0) == 0x80; ++back) --end;  // not inside a letter
   std::string text = "\"";
-  for (const char c : word.substr(0, longest)) text += static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? '?' : c;
-  return text + (word.size() > longest ? "...\"" : "\"");
+  for (const char c : as_utf8(word.substr(0, end))) text += static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? '?' : c;
+  return text + (whole ? "\"" : "...\"");
 }
 
 }  // namespace sunfleck

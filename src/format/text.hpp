@@ -14,18 +14,24 @@ namespace sunfleck {
 /// The bytes of a file. InputError if it is missing, a folder, or cannot be read.
 std::string read_whole(const std::string& file);
 
-/// Whether the bytes are UTF-8 (RFC 3629): no over-long forms, surrogates, or code points above U+10FFFF.
-bool is_utf8(std::string_view bytes);
-/// Bytes of ISO 8859-1 as UTF-8.
-std::string from_latin1(std::string_view bytes);
+/// Text without its byte-order mark; UTF-16 and UTF-32, known by their mark or by the zeros of the first sign, become UTF-8. Other bytes
+/// stay as they are. InputError naming the file where they are no such text.
+std::string without_mark(std::string bytes, const std::string& file);
+
+/// Bytes of a named character set as UTF-8. InputError(where) if there is no such set, or they are not of it.
+std::string from_charset(std::string_view bytes, const std::string& charset, const std::string& where);
+
+/// A text file as UTF-8, without a byte-order mark. Bytes that are no UTF-8 are taken for Windows-1252, with a note that says so.
+std::string read_text(const std::string& file, std::vector<std::string>& notes);
 
 /// InputError unless the file exists and is not a folder.
 void check_readable(const std::string& file);
 
-/// Lines of a text, without "\n" or "\r\n"; a line that ends with a backslash goes on in the next one if asked.
+/// Lines of a text, without "\n" or "\r\n". A line that ends with a backslash goes on in the next one where `continues` says so of it.
 class Lines {
  public:
-  explicit Lines(std::string_view text, bool join_continued = false) : text_(text), join_(join_continued) {}
+  using Continues = bool (*)(std::string_view line);
+  explicit Lines(std::string_view text, Continues continues = nullptr) : text_(text), continues_(continues) {}
   bool next(std::string_view& line);
   /// Number of the (first part of the) line last returned, from 1.
   long number() const { return first_; }
@@ -37,7 +43,7 @@ class Lines {
   std::string_view text_;
   std::size_t at_ = 0;
   long line_ = 0, first_ = 0;
-  bool join_;
+  Continues continues_;
   std::string joined_;
 };
 
@@ -52,6 +58,9 @@ class Words {
  private:
   std::string_view rest_;
 };
+
+/// Cells of a line between commas, without blanks around them.
+std::vector<std::string_view> cells_of(std::string_view line);
 
 /// Rows of a list of names (empty so far) by name, appended if new: Plant's own look-ups are linear, which a file with 10^5 names would
 /// feel.
@@ -76,7 +85,7 @@ bool to_integer(std::string_view word, std::int64_t& value);
 /// Three finite coordinates from the next words, or InputError for that line.
 Vec3 read_point(Words& words, const std::string& file, long line, const char* what);
 
-/// "\"word\"" for messages, shortened where it is long and with control characters replaced.
+/// "\"word\"" for messages, as UTF-8, shortened where it is long and with control characters replaced.
 std::string in_quotes(std::string_view word);
 
 }  // namespace sunfleck

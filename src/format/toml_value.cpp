@@ -9,6 +9,7 @@
 #include <toml++/toml.h>
 
 #include <format/text.hpp>
+#include <format/toml_depth.hpp>
 #include <sunfleck/core/error.hpp>
 #include <sunfleck/core/names.hpp>
 
@@ -211,7 +212,8 @@ TomlDocument::TomlDocument(const std::string& file) : TomlDocument(read_whole(fi
 
 TomlDocument::TomlDocument(std::string text, const std::string& file) : parsed_(std::make_unique<TomlParsed>()) {
   parsed_->file = file;
-  parsed_->text = std::move(text);
+  parsed_->text = without_mark(std::move(text), file);
+  check_toml_keys(parsed_->text, file);
   try {
     parsed_->root = toml::parse(std::string_view(parsed_->text), std::string_view(file));
   } catch (const toml::parse_error& error) {

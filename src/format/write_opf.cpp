@@ -9,8 +9,9 @@
 #include <fmt/format.h>
 #include <pugixml.hpp>
 
-#include <format/text.hpp>
+#include <format/xml_text.hpp>
 #include <sunfleck/core/error.hpp>
+#include <sunfleck/core/names.hpp>
 #include <sunfleck/core/replaced_file.hpp>
 
 namespace sunfleck {
@@ -66,11 +67,17 @@ void declare(pugi::xml_node list, const std::string& name, const char* type) {
   attribute.append_attribute("class") = type;
 }
 
+/// Elements below a structure that are no attributes.
+bool is_reserved(const std::string& name) {
+  return is_link(name) || name == "geometry";
+}
+
 /// A name that XML takes: attributes of other formats may have blanks.
 std::string element_name(const std::string& text) {
   std::string name;
   for (const char c : text) name += std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '.' || c == '-' ? c : '_';
-  return name.empty() || !(std::isalpha(static_cast<unsigned char>(name[0])) || name[0] == '_') ? "_" + name : name;
+  const bool first = !name.empty() && (std::isalpha(static_cast<unsigned char>(name[0])) || name[0] == '_');
+  return !first || is_reserved(name) ? "_" + name : name;
 }
 
 std::string value_text(const AttributeValue& value) {
@@ -87,7 +94,10 @@ const char* class_of(const AttributeValue& value) {
 
 class OpfWriter {
  public:
-  OpfWriter(const Plant& plant, const StructureColumns& columns) : plant_(plant), columns_(columns) {
+  OpfWriter(const Plant& plant, const StructureColumns& columns)
+      : plant_(plant),
+        columns_(columns),
+        attribute_names_(distinct_names(plant.attribute_names, element_name, {columns.names.begin(), columns.names.end()})) {
     auto root = document_.append_child("opf");
     root.append_attribute("version") = "2.0";
     root.append_attribute("editable") = "true";
@@ -132,7 +142,9 @@ class OpfWriter {
                       : "String";
       }
     for (std::size_t a = 0; a < classes.size(); ++a)
-      if (classes[a] && !kept_elsewhere(plant_.attribute_names[a])) declare(list, element_name(plant_.attribute_names[a]), classes[a]);
+      if (classes[a] && !kept_elsewhere(plant_.attribute_names[a])) declare(list, attribute_names_[a], classes[a]);
+    if (std::find(plant_.attribute_names.begin(), plant_.attribute_names.end(), "Name") == plant_.attribute_names.end())
+      declare(list, "Name", "String");
     for (const auto& name : columns_.names) declare(list, name, "Double");
   }
 
@@ -158,7 +170,9 @@ class OpfWriter {
       };
       own("scale", static_cast<std::int64_t>(depth.back())), own("id", s + 1);
       for (const auto& [key, value] : structure.attributes)
-        if (!kept_elsewhere(plant_.attribute_names[key])) put_text(node, element_name(plant_.attribute_names[key]), value_text(value));
+        if (!kept_elsewhere(plant_.attribute_names[key])) put_text(node, attribute_names_[key], value_text(value));
+      const std::string unnamed = plant_.types[structure.type] + "_" + node.attribute("id").value();  // what readers call it then
+      if (!structure.name.empty() && structure.name != unnamed && !plant_.attribute(s, "Name")) put_text(node, "Name", structure.name);
       add_columns(node, columns_, s);
       if (!shapes_of[s].empty()) add_geometry(node, shapes_of[s]);
     }
@@ -241,6 +255,7 @@ class OpfWriter {
 
   const Plant& plant_;
   const StructureColumns& columns_;
+  std::vector<std::string> attribute_names_;  ///< as elements
   pugi::xml_document document_;
   pugi::xml_node meshes_, shapes_;
   std::map<std::tuple<std::uint32_t, std::uint32_t, std::uint32_t, std::uint32_t>, std::int64_t> shape_ids_;
@@ -254,11 +269,13 @@ void write_opf(const Plant& plant, const StructureColumns& columns, const std::s
 }
 
 void add_to_opf(const std::string& original, const StructureColumns& columns, std::size_t structures, const std::string& file) {
-  check_readable(original);
-  const std::string text = read_whole(original);
+  std::vector<std::string> known;  // those of the plant, which were told when it was read
+  const std::string text = read_xml(original, known);
   pugi::xml_document document;
-  const auto parsed = document.load_buffer(text.data(), text.size(), pugi::parse_full);
+  const auto parsed = document.load_buffer(text.data(), text.size(), pugi::parse_full, pugi::encoding_utf8);
   if (!parsed) throw InputError(original, fmt::format("broken XML ({})", parsed.description()), "well-formed XML");
+  for (auto node : document.children())
+    if (node.type() == pugi::node_declaration && node.attribute("encoding")) node.attribute("encoding") = "UTF-8";
   const auto root = document.document_element();
   const auto topology = root.child("topology");
   if (!topology) throw InputError(original, "no <topology>", "the plant's structures");

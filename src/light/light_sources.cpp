@@ -5,6 +5,7 @@ namespace sunfleck {
 namespace {
 
 bool same_radiance(const Sky& a, const Sky& b) {
+  if (a.model == SkyModel::file && b.model == SkyModel::file) return a.table == b.table || (a.table && b.table && *a.table == *b.table);
   return a.model == b.model && (a.model != SkyModel::clear || (a.sun && b.sun && *a.sun == *b.sun));
 }
 

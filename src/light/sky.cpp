@@ -22,7 +22,7 @@ double clear_sky(double cos_zenith, double cos_chi) {
   return gradation * indicatrix;
 }
 
-const std::vector<std::string> names = {"uniform", "standard_overcast", "clear", "sphere"};
+const std::vector<std::string> names = {"uniform", "standard_overcast", "clear", "file", "sphere"};
 
 }  // namespace
 
@@ -48,12 +48,16 @@ double Sky::relative_radiance(const Vec3& d) const {
       return 3.0 * (1.0 + 2.0 * d.z) / (7.0 * pi);
     case SkyModel::clear:
       return clear_normalisation * clear_sky(d.z, glm::dot(d, *sun));
+    case SkyModel::file:
+      return table ? table->relative_radiance(d) : 0.0;
     default:
       return 1.0 / pi;
   }
 }
 
 void prepare_sky(Sky& sky, const std::string& where) {
+  if (sky.model == SkyModel::file && !sky.table)
+    throw InputError(where, "a sky of directions without any", "a table of directions and radiances");
   if (sky.model != SkyModel::clear) return;
   if (!sky.sun) throw InputError(where, "a clear sky without a sun", "a sun above the horizon, about which the clear sky is built");
   if (!(sky.sun->z > 0.0))

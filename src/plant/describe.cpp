@@ -20,6 +20,7 @@ PlantSummary summarize_plant(const Plant& plant) {
   summary.shapes = plant.shapes.size();
   summary.materials = plant.materials;
   summary.attributes = plant.attribute_names;
+  summary.notes = plant.notes;
   for (const auto& type : plant.types) summary.types.push_back({.type = type});
   for (const auto& structure : plant.structures) ++summary.types[structure.type].structures;
   std::vector<bool> seen(plant.structures.size(), false);
@@ -68,6 +69,7 @@ std::string describe_plant(const PlantSummary& s) {
   std::copy_if(s.materials.begin(), s.materials.end(), std::back_inserter(named), [](const auto& name) { return !name.empty(); });
   if (!named.empty()) fmt::format_to(out, "materials  {}\n", fmt::join(named, ", "));
   if (!s.attributes.empty()) fmt::format_to(out, "attributes {}\n", fmt::join(s.attributes, ", "));
+  for (const auto& note : s.notes) fmt::format_to(out, "note       {}\n", note);
   return text;
 }
 

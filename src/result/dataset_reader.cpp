@@ -1,5 +1,7 @@
 #include "result/dataset_reader.hpp"
 
+#include <unistd.h>
+
 #include <cmath>
 #include <filesystem>
 #include <limits>
@@ -34,6 +36,7 @@ DatasetReader::DatasetReader(const std::string& path) : path_(path) {
   InputRecord::note(path);
   file_ = Id{H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT)};
   if (file_) return;
+  if (::access(path.c_str(), R_OK) != 0) throw InputError(path, "a file that cannot be opened", "permission to read it");
   const bool signature = H5Fis_hdf5(path.c_str()) > 0;
   throw InputError(path, signature ? "a damaged HDF5 file, perhaps cut short" : "something else than HDF5", "a result file");
 }

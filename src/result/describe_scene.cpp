@@ -3,6 +3,8 @@
 #include <map>
 #include <set>
 
+#include "result/band_units.hpp"
+
 namespace sunfleck::h5 {
 
 void write_light_and_optics(OutputFile& file, ArrayWriter& arrays, const Scene& scene, const std::vector<Optics>& materials) {
@@ -36,11 +38,11 @@ void write_light_and_optics(OutputFile& file, ArrayWriter& arrays, const Scene& 
   arrays.write(group.get(), "duration", duration, "s");
   arrays.write(group.get(), "sun_present", sun_present, "1");
   arrays.write(group.get(), "sun_direction", sun_direction.data(), {states, 3}, "1");
-  arrays.write(group.get(), "sun_irradiance", sun_irradiance.data(), {states, bands}, "W m^-2");
+  arrays.write(group.get(), "sun_irradiance", sun_irradiance.data(), {states, bands}, irradiance_unit(scene));
   arrays.write(group.get(), "sun_angular_diameter", sun_diameter, "degree");
   arrays.write(group.get(), "sky_present", sky_present, "1");
   arrays.write_strings(group.get(), "sky_model", sky_models);
-  arrays.write(group.get(), "sky_irradiance", sky_irradiance.data(), {states, bands}, "W m^-2");
+  arrays.write(group.get(), "sky_irradiance", sky_irradiance.data(), {states, bands}, irradiance_unit(scene));
 
   std::vector<std::string> material_names;
   std::vector<float> front, back, transmittance;

@@ -4,12 +4,14 @@
 
 #include <sunfleck/core/memory.hpp>
 
+#include "result/band_units.hpp"
+
 namespace sunfleck::h5 {
 
 namespace {
 
 void write_balance(OutputFile& file, ArrayWriter& arrays, const SolveReport& report, std::size_t states, std::size_t bands,
-                   const HeightProfile& profile) {
+                   const HeightProfile& profile, const std::string& power) {
   constexpr std::size_t n = 9;
   std::vector<double> columns[n];
   const char* names[n] = {
@@ -25,15 +27,16 @@ void write_balance(OutputFile& file, ArrayWriter& arrays, const SolveReport& rep
       for (std::size_t i = 0; i < n; ++i) columns[i].push_back(values[i]);
     }
   const Id group = make_group(file, file.id(), "balance");
-  for (std::size_t i = 0; i < n; ++i) arrays.write(group.get(), names[i], columns[i].data(), {states, bands}, i < 5 ? "W" : "1");
+  for (std::size_t i = 0; i < n; ++i) arrays.write(group.get(), names[i], columns[i].data(), {states, bands}, i < 5 ? power : "1");
   const Id layers = make_group(file, group.get(), "profile");
   arrays.write(layers.get(), "height", profile.height, "m");
   arrays.write(layers.get(), "area", profile.area, "m^2");
-  arrays.write_states(layers.get(), "absorbed", profile.absorbed.data(), {states, HeightProfile::layers, bands}, "W");
+  arrays.write_states(layers.get(), "absorbed", profile.absorbed.data(), {states, HeightProfile::layers, bands}, power);
   arrays.flush();
 }
 
-void write_certificate(OutputFile& file, ArrayWriter& arrays, const Certificate& c, std::size_t states, std::size_t bands) {
+void write_certificate(OutputFile& file, ArrayWriter& arrays, const Certificate& c, std::size_t states, std::size_t bands,
+                       const std::string& power) {
   const std::vector<std::size_t> dims{states, c.organs.size(), bands};
   const Id group = make_group(file, file.id(), "certificate");
   const std::vector<std::uint32_t> narrow(c.organs.begin(), c.organs.end());
@@ -41,9 +44,9 @@ void write_certificate(OutputFile& file, ArrayWriter& arrays, const Certificate&
     arrays.write(group.get(), "organs", c.organs, "row of /organs");
   else
     arrays.write(group.get(), "organs", narrow, "row of /organs");
-  arrays.write_states(group.get(), "solved", c.solved.data(), dims, "W");
-  arrays.write_states(group.get(), "reference", c.reference.data(), dims, "W");
-  arrays.write_states(group.get(), "standard_error", c.standard_error.data(), dims, "W");
+  arrays.write_states(group.get(), "solved", c.solved.data(), dims, power);
+  arrays.write_states(group.get(), "reference", c.reference.data(), dims, power);
+  arrays.write_states(group.get(), "standard_error", c.standard_error.data(), dims, power);
   write_attribute(file, group.get(), "rmse", c.rmse);
   write_attribute(file, group.get(), "rmse_low", c.rmse_low);
   write_attribute(file, group.get(), "rmse_high", c.rmse_high);
@@ -74,13 +77,13 @@ void write_pairs(OutputFile& file, ArrayWriter& arrays, hid_t group, const std::
 }  // namespace
 
 void write_report(OutputFile& file, ArrayWriter& arrays, const SolveReport& report, const Certificate* certificate, std::size_t states,
-                  std::size_t bands, const HeightProfile& profile) {
+                  std::size_t bands, const HeightProfile& profile, const std::string& power) {
   write_attribute(file, file.id(), "status", report.status == SolveStatus::converged ? "converged" : "not_converged");
   if (!report.stand_in_rmse.empty()) {
     write_attribute(file, file.id(), "stand_in_rmse", report.stand_in_rmse);
     write_attribute(file, file.id(), "stand_in_bias", report.stand_in_bias);
   }
-  write_balance(file, arrays, report, states, bands, profile);
+  write_balance(file, arrays, report, states, bands, profile, power);
 
   std::vector<std::uint32_t> level, iteration;
   std::vector<double> residual, seconds;
@@ -108,7 +111,7 @@ void write_report(OutputFile& file, ArrayWriter& arrays, const SolveReport& repo
   write_pairs(file, arrays, counts.get(), report.counts, "value", "1");
   write_pairs(file, arrays, memory.get(), report.memory, "bytes", "byte");
   write_attribute(file, memory.get(), "peak_resident_bytes", peak_resident_bytes());
-  if (certificate) write_certificate(file, arrays, *certificate, states, bands);
+  if (certificate) write_certificate(file, arrays, *certificate, states, bands, power);
 }
 
 void write_structures(OutputFile& file, ArrayWriter& arrays, const SolveReport& report, const Scene& scene, const PlacedScene& placed) {
@@ -136,7 +139,7 @@ void write_structures(OutputFile& file, ArrayWriter& arrays, const SolveReport& 
   arrays.write_strings(group.get(), "type", type);
   arrays.write(group.get(), "map", map.data(), {n, 3, 4}, "m");
   arrays.write(group.get(), "solved", solved, "1");
-  arrays.write_states(group.get(), "absorbed", absorbed.data(), {states, n, bands}, "W");
+  arrays.write_states(group.get(), "absorbed", absorbed.data(), {states, n, bands}, power_unit(scene));
   arrays.flush();
 }
 

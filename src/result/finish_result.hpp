@@ -12,7 +12,7 @@ namespace sunfleck::h5 {
 
 /// /balance, /convergence, /counts, /certificate, /timings, /memory and the status.
 void write_report(OutputFile& file, ArrayWriter& arrays, const SolveReport& report, const Certificate* certificate, std::size_t states,
-                  std::size_t bands, const HeightProfile& profile);
+                  std::size_t bands, const HeightProfile& profile, const std::string& power_unit);
 
 /// /structures: what PlacedScene::closed absorbs. Nothing if there is none.
 void write_structures(OutputFile& file, ArrayWriter& arrays, const SolveReport& report, const Scene& scene, const PlacedScene& placed);

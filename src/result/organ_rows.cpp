@@ -29,13 +29,13 @@ OrganRows::OrganRows(OutputFile& file, ChunkQueue& queue, const FacetRows& rows,
   column(placement_, "placement", "row of /names/placement");
   column(structure_, "structure", "row of the plant's structures in /geometry, 4294967295 = ground");
   area_rows_.emplace_back(file_, queue_, group_.get(), "area", H5T_NATIVE_FLOAT, RowDataset::Shape{0, m, {}}, "m^2");
-  const auto values = [&](std::vector<RowDataset>& dataset, const char* name, std::vector<std::size_t> inner, const char* unit) {
+  const auto values = [&](std::vector<RowDataset>& dataset, const char* name, std::vector<std::size_t> inner, const std::string& unit) {
     if (keeps_(name))
       dataset.emplace_back(file_, queue_, group_.get(), name + name_length, H5T_NATIVE_FLOAT,
                            RowDataset::Shape{states_, m, std::move(inner)}, unit);
   };
-  values(irradiance_rows_, "organs/irradiance", {2, bands_}, "W m^-2");
-  values(absorbed_rows_, "organs/absorbed", {bands_}, "W");
+  values(irradiance_rows_, "organs/irradiance", {2, bands_}, irradiance_unit(rows.scene()));
+  values(absorbed_rows_, "organs/absorbed", {bands_}, power_unit(rows.scene()));
   values(sunlit_rows_, "organs/sunlit", {2}, "1");
 }
 
@@ -89,7 +89,7 @@ void OrganRows::end() {
     if (variance_rows_.empty()) {
       variance_group_ = open_or_make_group(file_, file_.id(), "variance");
       variance_rows_.emplace_back(file_, queue_, variance_group_.get(), "organs", H5T_NATIVE_FLOAT,
-                                  RowDataset::Shape{states_, rows_.placed().organs, {bands_}}, "W^2");
+                                  RowDataset::Shape{states_, rows_.placed().organs, {bands_}}, "square of that of /organs/absorbed");
     }
     append(variance_rows_, variance_, bands_, false);
   }

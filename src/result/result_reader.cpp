@@ -23,7 +23,8 @@ class Result::Impl {
     if (!reader.has_attribute("/", "format") || reader.text_attribute("/", "format") != "sunfleck-result")
       throw InputError(file, "an HDF5 file without format = \"sunfleck-result\"", "a result file");
     if (const auto version = reader.count_attribute("/", "format_version"); version != 1)
-      throw InputError(location(file, 0, "format_version"), std::to_string(version), "1: this program is older than the file");
+      throw InputError(location(file, 0, "format_version"), std::to_string(version),
+                       version > 1 ? "1: this program is older than the file" : "1, the only version there is");
     header.software_version = reader.text_attribute("/", "software_version");
     header.method = reader.text_attribute("/", "method");
     header.status = reader.text_attribute("/", "status");

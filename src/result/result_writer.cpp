@@ -11,6 +11,7 @@
 #include <sunfleck/core/sha256.hpp>
 
 #include "result/describe_scene.hpp"
+#include "result/band_units.hpp"
 #include "result/finish_result.hpp"
 #include "result/height_profile.hpp"
 #include "result/organ_rows.hpp"
@@ -117,7 +118,7 @@ class ResultWriter::Impl {
 
     h5::ArrayWriter arrays(file_, queue_);
     h5::write_structures(file_, arrays, report, rows_.scene(), rows_.placed());
-    h5::write_report(file_, arrays, report, certificate, states_, bands_, profile_);
+    h5::write_report(file_, arrays, report, certificate, states_, bands_, profile_, h5::power_unit(rows_.scene()));
     h5::write_sensors(file_, arrays, rows_.scene(), report.sensors);
     facets_group_.close();
     variance_group_.close();
@@ -134,12 +135,14 @@ class ResultWriter::Impl {
     if (!any) return;
     facets_group_ = h5::make_group(file_, file_.id(), "facets");
     const std::size_t n = rows_.placed().facets;
-    const auto begin = [&](std::vector<RowDataset>& dataset, const char* name, hid_t type, RowDataset::Shape shape, const char* unit) {
+    const auto begin = [&](std::vector<RowDataset>& dataset, const char* name, hid_t type, RowDataset::Shape shape,
+                           const std::string& unit) {
       dataset.emplace_back(file_, queue_, facets_group_.get(), name + sizeof "facets/" - 1, type, shape, unit);
     };
     const auto states = [&](std::vector<std::size_t> inner) { return RowDataset::Shape{states_, n, std::move(inner)}; };
-    if (keeps("facets/irradiance")) begin(irradiance_, "facets/irradiance", H5T_NATIVE_FLOAT, states({2, bands_}), "W m^-2");
-    if (keeps("facets/absorbed")) begin(absorbed_, "facets/absorbed", H5T_NATIVE_FLOAT, states({bands_}), "W m^-2");
+    const std::string per_area = h5::irradiance_unit(rows_.scene());
+    if (keeps("facets/irradiance")) begin(irradiance_, "facets/irradiance", H5T_NATIVE_FLOAT, states({2, bands_}), per_area);
+    if (keeps("facets/absorbed")) begin(absorbed_, "facets/absorbed", H5T_NATIVE_FLOAT, states({bands_}), per_area);
     if (keeps("facets/sunlit")) begin(sunlit_, "facets/sunlit", H5T_NATIVE_FLOAT, states({2}), "1");
     begin(area_, "facets/area", H5T_NATIVE_FLOAT, {0, n, {}}, "m^2");
     wide_organs_ = rows_.placed().organs > std::uint64_t{1} << 32;
@@ -212,7 +215,7 @@ class ResultWriter::Impl {
       if (variance_.empty()) {
         variance_group_ = h5::open_or_make_group(file_, file_.id(), "variance");
         variance_.emplace_back(file_, queue_, variance_group_.get(), "facets", H5T_NATIVE_FLOAT,
-                               RowDataset::Shape{states_, rows_.placed().facets, {bands_}}, "W^2 m^-4");
+                               RowDataset::Shape{states_, rows_.placed().facets, {bands_}}, "square of that of /facets/absorbed");
       }
       variance_.front().append(s, variance, count);
     }

@@ -6,6 +6,8 @@
 
 #include <sunfleck/core/error.hpp>
 
+#include "result/band_units.hpp"
+
 namespace sunfleck::h5 {
 
 namespace {
@@ -24,7 +26,7 @@ class SensorWriter {
             fmt::format("{}: sensor \"{}\" has {} values of {}", file_.path(), entry.name, data.size(), dims[0] * dims[1] * dims[2]));
       for (const float v : data)
         if (!std::isfinite(v)) throw Error(fmt::format("{}: sensor \"{}\" has a value that is not finite", file_.path(), entry.name));
-      arrays_.write_states(group.get(), name, data.data(), dims, "W m^-2");
+      arrays_.write_states(group.get(), name, data.data(), dims, irradiance_unit(scene_));
     };
     values("irradiance", reading.irradiance);
     values("standard_error", reading.standard_error);
@@ -78,7 +80,7 @@ void write_lamps(OutputFile& file, ArrayWriter& arrays, const Scene& scene) {
   const Id group = make_group(file, file.id(), "lamps");
   arrays.write_strings(group.get(), "name", names);
   arrays.write(group.get(), "copies", copies, "1");
-  arrays.write(group.get(), "power", power.data(), {lamps, bands}, "W");
+  arrays.write(group.get(), "power", power.data(), {lamps, bands}, power_unit(scene));
   arrays.write_states(group.get(), "shines", shines.data(), {states, lamps}, "1");
   arrays.flush();
 }

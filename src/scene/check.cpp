@@ -5,9 +5,11 @@
 #include <fmt/format.h>
 
 #include <sunfleck/core/error.hpp>
+#include <sunfleck/core/utf8.hpp>
 #include <sunfleck/scene/build.hpp>
 
 #include "scene/check_devices.hpp"
+#include "scene/check_reach.hpp"
 
 namespace sunfleck {
 
@@ -19,6 +21,7 @@ class Check {
 
   void run() const {
     bands();
+    names();
     light();
     for (const auto& optics : scene_.optics) optical(optics, "optics." + optics.name);
     if (scene_.periodic) cell(*scene_.periodic);
@@ -26,6 +29,7 @@ class Check {
     plants();
     groups();
     group_depth();
+    check_reach(scene_);
     check_lamps(scene_);
     check_sensors(scene_);
   }
@@ -48,8 +52,8 @@ class Check {
     if (values.size() != scene_.bands.size())
       fail(key, fmt::format("{} values", values.size()), fmt::format("one per band, {}", scene_.bands.size()));
     for (std::size_t b = 0; b < values.size(); ++b)
-      if (!(values[b] >= 0) || std::isinf(values[b]))
-        fail(key + "." + scene_.bands[b], fmt::format("{}", values[b]), "a finite number of zero or more");
+      if (!(values[b] >= 0 && values[b] <= brightest))
+        fail(key + "." + scene_.bands[b], fmt::format("{}", values[b]), fmt::format("a number from 0 to {}", brightest));
   }
 
   void light() const {
@@ -57,8 +61,8 @@ class Check {
     for (std::size_t s = 0; s < scene_.states.size(); ++s) {
       const auto& state = scene_.states[s];
       const std::string key = fmt::format("state[{}]", s);
-      if (!(state.duration_s >= 0) || std::isinf(state.duration_s))
-        fail(key + ".duration_s", fmt::format("{}", state.duration_s), "a finite number of zero or more seconds");
+      if (!(state.duration_s >= 0 && state.duration_s <= longest_duration_s))
+        fail(key + ".duration_s", fmt::format("{}", state.duration_s), fmt::format("a number from 0 to {} seconds", longest_duration_s));
       if (state.sun) {
         const auto& sun = *state.sun;
         if (!(std::abs(glm::length(sun.direction) - 1.0) < 1e-6))
@@ -70,6 +74,8 @@ class Check {
       }
       if (!state.sky) continue;
       irradiance(state.sky->irradiance, key + ".sky.irradiance");
+      if (state.sky->model == SkyModel::file && !state.sky->table)
+        fail(key + ".sky", "a sky of directions without any", "a table of directions and radiances");
       if (state.sky->model == SkyModel::clear && !state.sky->sun)
         fail(key + ".sky", "a clear sky without a sun", "the direction of the sun, about which it is built");
     }
@@ -95,8 +101,7 @@ class Check {
   }
 
   void cell(const PeriodicCell& cell) const {
-    for (const double v : {cell.x_low, cell.y_low, cell.x_high, cell.y_high})
-      if (!std::isfinite(v)) fail("domain.periodic", fmt::format("{}", v), "finite numbers");
+    for (const double v : {cell.x_low, cell.y_low, cell.x_high, cell.y_high}) near(v, "domain.periodic");
     if (!(cell.width() > 0 && cell.depth() > 0))
       fail("domain.periodic", fmt::format("a cell of {} by {} m", cell.width(), cell.depth()), "lengths above zero");
   }
@@ -107,15 +112,58 @@ class Check {
       if (tau != 0) fail("ground.optics.transmittance", fmt::format("{}", tau), "0: ground lets nothing through");
     if (ground.mesh) {
       check_mesh(*ground.mesh, location(scene_.file, 0, "ground.mesh"));
+      for (const auto& p : ground.mesh->vertices)
+        for (int axis = 0; axis < 3; ++axis) near(p[axis], "ground.mesh");
       if (ground.mesh->triangles.empty()) fail("ground.mesh", "no face", "at least one triangle");
     } else {
       for (const double v : {ground.size[0], ground.size[1]})
-        if (!(v > 0) || std::isinf(v)) fail("ground.size", fmt::format("{}", v), "a finite length above zero [m]");
-      for (const double v : {ground.centre[0], ground.centre[1], ground.height})
-        if (!std::isfinite(v)) fail("ground.center", fmt::format("{}", v), "finite numbers");
+        if (!(v > 0 && v <= 2 * farthest_coordinate))
+          fail("ground.size", fmt::format("{}", v), fmt::format("a length above zero and up to {} m", 2 * farthest_coordinate));
+      for (const double v : {ground.centre[0], ground.centre[1]}) near(v, "ground.center");
+      near(ground.height, "ground.height");
       if (ground.cells[0] == 0 || ground.cells[1] == 0) fail("ground.cells", "0", "at least one cell along x and y");
     }
     if (scene_.periodic) check_ground_fills(ground, *scene_.periodic, location(scene_.file, 0, "ground"));
+  }
+
+  void near(double v, const std::string& key) const {
+    if (!(std::abs(v) <= farthest_coordinate))
+      fail(key, fmt::format("{}", v), fmt::format("coordinates from {} to {} m", -farthest_coordinate, farthest_coordinate));
+  }
+
+  /// What names of the scene must be, so that every output holds them on one line.
+  void name(const std::string& name, const std::string& key) const {
+    if (!is_utf8(name)) fail(key, '"' + as_utf8(name) + "\", in bytes that are no UTF-8", "UTF-8");
+    if (has_control_character(name)) fail(key, '"' + clean_name(name) + "\" with a control character", "a name on one line of text");
+  }
+
+  void names() const {
+    for (const auto& band : scene_.bands) name(band, "bands");
+    for (std::size_t s = 0; s < scene_.states.size(); ++s) name(scene_.states[s].name, fmt::format("state[{}].name", s));
+    for (const auto& optics : scene_.optics) name(optics.name, "optics");
+    for (std::size_t l = 0; l < scene_.lamps.size(); ++l) name(scene_.lamps[l].name, fmt::format("lamp[{}].name", l));
+    for (std::size_t i = 0; i < scene_.sensors.size(); ++i) name(scene_.sensors[i].name, fmt::format("sensor[{}].name", i));
+    const auto own = [&](const std::string& given, const std::string& key) {
+      name(given, key);
+      if (scene_.ground && given == "ground") fail(key, "\"ground\"", "another name: results call the scene's ground so");
+    };
+    for (std::size_t p = 0; p < scene_.plants.size(); ++p) own(scene_.plants[p].name, fmt::format("plant[{}].name", p));
+    for (std::size_t g = 0; g < scene_.groups.size(); ++g) own(scene_.groups[g].name, fmt::format("group[{}].name", g));
+  }
+
+  void names_of(const Plant& plant, const std::string& key) const {
+    for (const auto* list : {&plant.types, &plant.attribute_names, &plant.materials})
+      for (const auto& text : *list) name(text, key);
+    for (const auto& structure : plant.structures) {
+      name(structure.name, key);
+      for (const auto& [attribute, value] : structure.attributes)
+        if (const auto* text = std::get_if<std::string>(&value)) name(*text, key);
+    }
+    if (!scene_.ground) return;
+    for (const auto& shape : plant.shapes)
+      if (plant.types[plant.structures[shape.structure].type] == "ground")
+        fail(key, fmt::format("an organ of type \"ground\"{}", plant.file.empty() ? "" : " in " + plant.file),
+             "another type: results call the scene's ground so");
   }
 
   void placement(const Placement& placement, const std::string& key) const {
@@ -132,7 +180,7 @@ class Check {
       const auto& entry = scene_.plants[p];
       const std::string key = fmt::format("plant[{}]", p);
       if (!entry.plant) fail(key, "no plant", "a plant");
-      if (checked.insert(entry.plant.get()).second) check_plant(*entry.plant);
+      if (checked.insert(entry.plant.get()).second) check_plant(*entry.plant), names_of(*entry.plant, key);
       if (entry.shape_optics.size() != entry.plant->shapes.size())
         fail(key + ".shape_optics", fmt::format("{} rows", entry.shape_optics.size()),
              fmt::format("one per shape, {}", entry.plant->shapes.size()));

@@ -49,6 +49,10 @@ std::uint64_t ground_organs(const Scene& scene) {
 
 }  // namespace
 
+std::string copies_text(std::uint64_t copies) {
+  return (copies >= too_many_copies ? "at least " : "") + std::to_string(copies);
+}
+
 std::vector<std::uint64_t> placed_copies(const Scene& scene) {
   std::vector<std::uint64_t> copies;
   GroupContents contents(scene);

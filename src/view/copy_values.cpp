@@ -1,7 +1,6 @@
 #include <sunfleck/view/copy_values.hpp>
 
 #include <algorithm>
-#include <cctype>
 #include <limits>
 #include <span>
 
@@ -18,12 +17,6 @@ namespace {
 
 constexpr std::size_t rows_at_once = 16384;
 constexpr std::size_t names_in_message = 10;
-
-std::string attribute_name(const std::string& text) {
-  std::string name;
-  for (const char c : text) name += std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '.' || c == '-' ? c : '_';
-  return name;
-}
 
 /// Names of placed copies; the ground's placement is none.
 std::uint32_t placement_row(const Result& result, const ResultGeometry& geometry, const OrganTexts& names,
@@ -56,7 +49,7 @@ CopyValues copy_values(const Result& result, const ResultGeometry& geometry, con
   CopyValues out;
   out.placement = names.placements[wanted];
   out.names = {"area_m2"};
-  for (const auto& name : value_names(result, kept)) out.names.push_back(attribute_name(name));
+  for (auto& name : value_names(result, kept, attribute_name)) out.names.push_back(std::move(name));
   bool found = false;
   for (std::size_t first = 0; first < m; first += rows_at_once) {
     progress.check();

@@ -25,7 +25,7 @@ void export_csv(const Result& result, const std::string& file, Progress& progres
   ReplacedFile out(file);
   fmt::memory_buffer text;
   const auto put = std::back_inserter(text);
-  fmt::format_to(put, "organ,plant,placement,name,type,area_m2{}\n", value_header(result, kept));
+  text.append(header_line({"organ", "plant", "placement", "name", "type", "area_m2"}, result, kept));
   std::vector<double> sum(bands);
   for (std::size_t first = 0; first < m; first += rows_at_once) {
     progress.check();

@@ -76,7 +76,7 @@ class GlbWriter {
   void write(const std::string& path) {
     group();
     find_centre();
-    const std::string json = padded(describe().dump(), ' ');
+    const std::string json = padded(describe().dump(-1, ' ', false, nlohmann::json::error_handler_t::replace), ' ');
     std::size_t bin = 0;
     for (const auto& m : meshes_) bin += m.vertex_bytes() + m.index_bytes() + m.instance_bytes();
     const std::size_t total = 12 + 8 + json.size() + 8 + bin;

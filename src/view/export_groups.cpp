@@ -106,10 +106,14 @@ class GroupTable {
 
     ReplacedFile out(file);
     fmt::memory_buffer text;
-    std::string head;
+    std::vector<std::string> head;
     for (std::size_t k = 0; k < keys_.size(); ++k)
-      head += (k > 0 ? "," : "") + (layer_ == k ? "z_low_m,z_high_m" : csv_field(keys_[k].name));
-    text.append(head + "," + source + ",area_m2" + value_header(result_, kept) + "\n");
+      if (layer_ == k)
+        head.insert(head.end(), {"z_low_m", "z_high_m"});
+      else
+        head.push_back(keys_[k].name);
+    head.insert(head.end(), {source, "area_m2"});
+    text.append(header_line(std::move(head), result_, kept));
 
     // sorted by the first key, then the second, ...
     std::vector<std::vector<std::uint32_t>> place;

@@ -5,9 +5,11 @@
 #include <fmt/format.h>
 
 #include <sunfleck/core/companion_file.hpp>
+#include <sunfleck/core/names.hpp>
 #include <sunfleck/core/replaced_file.hpp>
 #include <sunfleck/view/export.hpp>
 
+#include "view/column_names.hpp"
 #include "view/lit_colours.hpp"
 #include "view/lit_mesh.hpp"
 #include "view/mesh_columns.hpp"
@@ -32,13 +34,20 @@ class MeanColours {
   std::vector<double> count_;
 };
 
-std::string material_text(const std::vector<Optics>& materials, const MeanColours& colours) {
+/// What the library calls materials.
+std::vector<std::string> material_names(const std::vector<Optics>& materials) {
+  std::vector<std::string> names;
+  for (const auto& m : materials) names.push_back(m.name);
+  return distinct_names(names, plain_name);
+}
+
+std::string material_text(const std::vector<std::string>& names, const MeanColours& colours) {
   std::string text = "# Colours are means over the facets; the mesh has its own at the vertices.\n";
-  for (std::size_t m = 0; m < materials.size(); ++m) {
+  for (std::size_t m = 0; m < names.size(); ++m) {
     if (!colours.used(m)) continue;
     const auto c = colours.mean(m);
-    text += fmt::format("newmtl {}\nKd {:.6g} {:.6g} {:.6g}\nKa 0 0 0\nKs 0 0 0\nd 1\nillum 1\n", plain_name(materials[m].name),
-                        c[0] / 255.0, c[1] / 255.0, c[2] / 255.0);
+    text += fmt::format("newmtl {}\nKd {:.6g} {:.6g} {:.6g}\nKa 0 0 0\nKs 0 0 0\nd 1\nillum 1\n", names[m], c[0] / 255.0, c[1] / 255.0,
+                        c[2] / 255.0);
   }
   return text;
 }
@@ -48,7 +57,7 @@ std::string material_text(const std::vector<Optics>& materials, const MeanColour
 void export_obj(const Result& result, const std::string& file, const MeshChoice& choice, Progress& progress) {
   const LitMesh mesh(result);
   const LitColours colours(result, mesh.geometry(), choice, progress);
-  const auto materials = result.materials();
+  const auto materials = material_names(result.materials());
   const std::string library = material_library_beside(file);
 
   ReplacedFile out(file), out_library(library);
@@ -82,8 +91,7 @@ void export_obj(const Result& result, const std::string& file, const MeshChoice&
       }
       for (std::size_t t = 0; t < placed.facets(); ++t) {
         if (!grouped || organs[at + t] != organ) fmt::format_to(put, "g organ_{}\n", organ = organs[at + t]);
-        if (!grouped || optics[at + t] != material)
-          fmt::format_to(put, "usemtl {}\n", plain_name(materials[material = optics[at + t]].name));
+        if (!grouped || optics[at + t] != material) fmt::format_to(put, "usemtl {}\n", materials[material = optics[at + t]]);
         grouped = true;
         const auto corners = placed.triangle(t);
         fmt::format_to(put, "f {} {} {}\n", vertex + corners[0], vertex + corners[1], vertex + corners[2]);

@@ -42,17 +42,22 @@ class SensorTable {
       const std::string suffix = states.size() > 1 ? "_" + state.name : "";
       for (const auto& band : result.bands())
         for (const char* side : {"", "_back"})
-          if (*side == '\0' || back)
-            header_ += "," + csv_field(fmt::format("irradiance{}_{}{}", side, band, suffix)) + "," +
-                       csv_field(fmt::format("standard_error{}_{}{}", side, band, suffix));
+          if (*side == '\0' || back) {
+            columns_.push_back(fmt::format("irradiance{}_{}{}", side, band, suffix));
+            columns_.push_back(fmt::format("standard_error{}_{}{}", side, band, suffix));
+          }
     }
     sums_ = std::all_of(durations_.begin(), durations_.end(), [](double d) { return d > 0; });
     if (!sums_) return;
     for (std::size_t b = 0; b < bands_; ++b)
-      header_ += "," + csv_field((counts_photons(result.band_units()[b]) ? "exposure_umol_m2_" : "exposure_J_m2_") + result.bands()[b]);
+      columns_.push_back((counts_photons(result.band_units()[b]) ? "exposure_umol_m2_" : "exposure_J_m2_") + result.bands()[b]);
   }
 
-  std::string header() const { return "sensor,kind,cell,x,y,z,normal_x,normal_y,normal_z,area_m2" + header_ + "\n"; }
+  std::string header() const {
+    std::string text = "sensor,kind,cell,x,y,z,normal_x,normal_y,normal_z,area_m2";
+    for (const auto& name : distinct_names(columns_, same_name)) text += "," + csv_field(name);
+    return text + "\n";
+  }
 
   void row(const StoredSensor& sensor, std::size_t k, fmt::memory_buffer& text) const {
     const auto put = std::back_inserter(text);
@@ -83,7 +88,7 @@ class SensorTable {
   std::size_t bands_;
   bool back_, sums_ = false;
   std::vector<double> durations_;
-  std::string header_;
+  std::vector<std::string> columns_;
 };
 
 }  // namespace

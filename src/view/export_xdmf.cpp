@@ -11,6 +11,7 @@
 #include <sunfleck/core/error.hpp>
 #include <sunfleck/core/input_file.hpp>
 #include <sunfleck/core/replaced_file.hpp>
+#include <sunfleck/core/utf8.hpp>
 #include <sunfleck/view/export.hpp>
 
 #include "result/dataset_reader.hpp"
@@ -25,7 +26,7 @@ namespace fs = std::filesystem;
 
 std::string escaped(const std::string& text) {
   std::string out;
-  for (const char c : text) switch (c) {
+  for (const char c : clean_name(text)) switch (c) {
       case '&':
         out += "&amp;";
         break;
@@ -42,6 +43,12 @@ std::string escaped(const std::string& text) {
         out += c;
     }
   return out;
+}
+
+/// Comments of XML hold no two dashes in a row.
+std::string commented(std::string text) {
+  for (std::size_t at = text.find("--"); at != std::string::npos; at = text.find("--", at)) text.insert(++at, 1, ' ');
+  return text;
 }
 
 struct Number {
@@ -115,7 +122,7 @@ class XdmfText {
 
   std::string write(const std::vector<Piece>& pieces, std::size_t colours) const {
     std::string text = "<?xml version=\"1.0\" ?>\n";
-    for (const auto& line : mesh_comments(result_)) text += "<!-- " + line + " -->\n";
+    for (const auto& line : mesh_comments(result_)) text += "<!-- " + commented(line) + " -->\n";
     text += "<Xdmf Version=\"2.0\">\n<Domain>\n";
     std::vector<std::size_t> states;
     for (std::size_t s = 0; s < result_.states().size(); ++s)

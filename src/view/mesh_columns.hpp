@@ -11,7 +11,7 @@ namespace sunfleck {
 
 /// Floats of facets, one element of the rows of a dataset [states][n][width].
 struct MeshColumn {
-  std::string name;  ///< letters, digits and _.-: only
+  std::string name;  ///< letters, digits and _.-: only; no two alike
   std::string dataset;
   std::size_t state, width, element;
   std::string unit;
@@ -20,9 +20,6 @@ struct MeshColumn {
 /// What the file keeps of irradiance_front_BAND, irradiance_back_BAND, absorbed_BAND, sunlit_front, sunlit_back, of the state chosen or of
 /// all; "_STATE" is appended where several are kept.
 std::vector<MeshColumn> mesh_columns(const Result& result, const MeshChoice& choice);
-
-/// Names without blanks and signs that XML, PLY or VTK could take for their own.
-std::string plain_name(const std::string& text);
 
 /// [columns][count] values of facets [first, first + count). A dataset is read once for all its columns.
 std::vector<std::vector<float>> column_values(const Result& result, const std::vector<MeshColumn>& columns, std::size_t first,

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include <sunfleck/core/error.hpp>
+#include <sunfleck/core/names.hpp>
 
 namespace sunfleck {
 
@@ -56,14 +57,15 @@ std::string csv_field(const std::string& text) {
   return quoted + "\"";
 }
 
-std::vector<std::string> value_names(const Result& result, const KeptValues& kept) {
+std::vector<std::string> value_names(const Result& result, const KeptValues& kept, ColumnNames::Clean clean) {
+  const ColumnNames called(result, clean);
   const std::size_t bands = result.bands().size(), states = result.states().size();
   std::vector<std::string> names;
   for (std::size_t s = 0; s < states; ++s) {
-    const std::string suffix = states > 1 ? "_" + result.states()[s].name : "";
+    const std::string suffix = states > 1 ? "_" + called.states[s] : "";
     const auto column = [&](const std::string& name) { names.push_back(name + suffix); };
     for (std::size_t b = 0; b < bands; ++b) {
-      const std::string& band = result.bands()[b];
+      const std::string& band = called.bands[b];
       if (kept.absorbed) column((counts_photons(result.band_units()[b]) ? "absorbed_umol_s_" : "absorbed_W_") + band);
       if (kept.irradiance) column("irradiance_front_" + band), column("irradiance_back_" + band);
     }
@@ -71,14 +73,15 @@ std::vector<std::string> value_names(const Result& result, const KeptValues& kep
   }
   if (kept.sums)
     for (std::size_t b = 0; b < bands; ++b)
-      names.push_back((counts_photons(result.band_units()[b]) ? "absorbed_umol_" : "absorbed_J_") + result.bands()[b]);
-  return names;
+      names.push_back((counts_photons(result.band_units()[b]) ? "absorbed_umol_" : "absorbed_J_") + called.bands[b]);
+  return distinct_names(names, same_name);
 }
 
-std::string value_header(const Result& result, const KeptValues& kept) {
+std::string header_line(std::vector<std::string> first, const Result& result, const KeptValues& kept) {
+  for (auto& name : value_names(result, kept)) first.push_back(std::move(name));
   std::string header;
-  for (const auto& name : value_names(result, kept)) header += "," + csv_field(name);
-  return header;
+  for (const auto& name : distinct_names(first, same_name)) header += (header.empty() ? "" : ",") + csv_field(name);
+  return header + "\n";
 }
 
 }  // namespace sunfleck

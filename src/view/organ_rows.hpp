@@ -7,6 +7,8 @@
 
 #include <sunfleck/result/result_reader.hpp>
 
+#include "view/column_names.hpp"
+
 namespace sunfleck {
 
 /// What the file keeps of light on organs, or on facets.
@@ -43,9 +45,9 @@ bool counts_photons(const std::string& unit);
 /// Quoted where RFC 4180 wants it.
 std::string csv_field(const std::string& text);
 
-/// "absorbed_W_PAR", "irradiance_front_PAR", ...: per state and band, then sums over the states.
-std::vector<std::string> value_names(const Result& result, const KeptValues& kept);
-/// The same as the end of a header line, a comma before each.
-std::string value_header(const Result& result, const KeptValues& kept);
+/// "absorbed_W_PAR", "irradiance_front_PAR", ...: per state and band, then sums over the states. No two are alike.
+std::vector<std::string> value_names(const Result& result, const KeptValues& kept, ColumnNames::Clean clean = same_name);
+/// A header line: `first` and then value_names, none twice.
+std::string header_line(std::vector<std::string> first, const Result& result, const KeptValues& kept);
 
 }  // namespace sunfleck

@@ -82,6 +82,7 @@ TEST_CASE("What is no HDF5 or only a part of one is refused", "[format][h5]") {
   const auto size = std::filesystem::file_size(text.path);
   for (const std::uintmax_t part : {size / 2, size - 1}) {
     std::filesystem::resize_file(text.path, part);
-    CHECK(message_of(text, [&] { read_plant(text.path); }) == "bad.h5: found a broken HDF5 file; expected a plant written by sunfleck");
+    CHECK(message_of(text, [&] { read_plant(text.path); }) ==
+          "bad.h5: found a damaged HDF5 file, perhaps cut short; expected a whole file written by sunfleck");
   }
 }

@@ -11,6 +11,9 @@ namespace sunfleck {
 
 using Vec3 = glm::dvec3;
 using Mat3 = glm::dmat3;
+/// Coordinates of scenes lie within this distance of the origin along each axis [m]: two and a half times round the Earth, where doubles
+/// are exact to 1e-8 m and everything that single precision holds is finite.
+inline constexpr double farthest_coordinate = 1e8;
 using Triangle = std::array<Vec3, 3>;  ///< corners [m]; the front is the side from which they run counter-clockwise
 
 /// p -> linear * p + translation.

@@ -9,6 +9,9 @@
 
 namespace sunfleck {
 
+/// Whether a TOML file is a species: it names the program that grows it, which a scene does not. Throws InputError if it is no TOML.
+bool is_species(const std::string& file);
+
 /// Reads a species. Throws InputError with file, line and key for a value out of its range; all unknown keys at once, each with
 /// the nearest known one.
 Species read_species(const std::string& file);

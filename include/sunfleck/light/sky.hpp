@@ -7,12 +7,13 @@
 #include <vector>
 
 #include <sunfleck/core/vector.hpp>
+#include <sunfleck/light/sky_table.hpp>
 
 namespace sunfleck {
 
-enum class SkyModel { uniform, standard_overcast, clear, sphere };
+enum class SkyModel { uniform, standard_overcast, clear, file, sphere };
 
-/// "uniform", "standard_overcast", "clear", "sphere"; throws InputError-free std::nullopt for anything else.
+/// "uniform", "standard_overcast", "clear", "file", "sphere"; std::nullopt for anything else.
 std::optional<SkyModel> sky_model_from_name(const std::string& name);
 std::string name_of(SkyModel model);
 /// All names, for messages.
@@ -23,16 +24,18 @@ const std::vector<std::string>& sky_model_names();
 /// the same radiance 1/pi all round (for tests).
 struct Sky {
   SkyModel model = SkyModel::uniform;
-  std::vector<double> irradiance;    ///< per band, horizontal, unobstructed [W m^-2]
-  std::optional<Vec3> sun;           ///< unit vector towards the sun; `clear` needs it (also with the sun's beam left out)
-  double clear_normalisation = 1.0;  ///< set by prepare_sky(): 1 / integral of the unnormalised clear sky
+  std::vector<double> irradiance;         ///< per band, horizontal, unobstructed [W m^-2]
+  std::optional<Vec3> sun;                ///< unit vector towards the sun; `clear` needs it (also with the sun's beam left out)
+  std::shared_ptr<const SkyTable> table;  ///< `file` needs it; results name the model only
+  double clear_normalisation = 1.0;       ///< set by prepare_sky(): 1 / integral of the unnormalised clear sky
 
   /// Relative radiance towards the unit vector d [sr^-1].
   double relative_radiance(const Vec3& d) const;
   bool reaches_below_horizon() const { return model == SkyModel::sphere; }
 };
 
-/// Computes the normalisation of models that have no closed form. Throws InputError if `clear` has no sun direction above the horizon.
+/// Computes the normalisation of models that have no closed form. Throws InputError if `clear` has no sun direction above the horizon, or
+/// `file` no table.
 void prepare_sky(Sky& sky, const std::string& where);
 
 }  // namespace sunfleck

@@ -9,6 +9,12 @@
 
 namespace sunfleck {
 
+/// Irradiances, exitances and powers of sources are at most this [W m^-2, umol m^-2 s^-1, W]: sums over any scene stay finite in single
+/// precision.
+inline constexpr double brightest = 1e12;
+/// A state's duration is at most this [s]: three hundred years.
+inline constexpr double longest_duration_s = 1e10;
+
 struct LightState {
   std::string name;
   double duration_s = 0.0;  ///< 0 = unknown; daily sums need it

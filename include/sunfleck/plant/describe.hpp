@@ -29,6 +29,7 @@ struct PlantSummary {
   std::size_t shapes = 0;
   std::vector<std::string> materials;   ///< names; "" where the file names none
   std::vector<std::string> attributes;  ///< names
+  std::vector<std::string> notes;       ///< of the reader
   double area_m2 = 0;                   ///< one-sided [m^2]
   Box bounds;                           ///< [m]; a vertex that no facet uses does not count
 };

@@ -44,6 +44,7 @@ struct Plant {
   std::vector<Structure> structures;
   std::vector<Mesh> meshes;
   std::vector<Shape> shapes;
+  std::vector<std::string> notes;  ///< what its reader wants the user to know; no part of the plant
 
   std::size_t facet_count() const;
   /// One-sided area of all facets in the plant's own unit, squared [m^2].

@@ -11,6 +11,9 @@ namespace sunfleck {
 /// More copies than any scene can hold: where groups of groups multiply beyond it, counts stay here instead of wrapping around.
 inline constexpr std::uint64_t too_many_copies = std::uint64_t{1} << 32;
 
+/// A number of copies for messages: "at least 4294967296" where counting ended.
+std::string copies_text(std::uint64_t copies);
+
 /// Per row of Scene::plants: placed copies, through groups of any depth, at most too_many_copies. No cycle among groups.
 std::vector<std::uint64_t> placed_copies(const Scene& scene);
 

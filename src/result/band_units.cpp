@@ -1,0 +1,35 @@
+#include "result/band_units.hpp"
+
+#include <algorithm>
+
+namespace sunfleck::h5 {
+
+namespace {
+
+constexpr const char* watts = "W m^-2";
+
+/// Units of the bands after `change`, as one where they are alike.
+template <class Change>
+std::string units_of(const Scene& scene, Change&& change) {
+  auto units = scene.band_units;
+  units.resize(scene.band_count(), watts);
+  std::string text;
+  for (const auto& unit : units) text += (text.empty() ? "" : ", ") + change(unit);
+  const bool alike = std::all_of(units.begin(), units.end(), [&](const std::string& unit) { return unit == units.front(); });
+  return alike && !units.empty() ? change(units.front()) : text;
+}
+
+}  // namespace
+
+std::string irradiance_unit(const Scene& scene) {
+  return units_of(scene, [](const std::string& unit) { return unit; });
+}
+
+std::string power_unit(const Scene& scene) {
+  return units_of(scene, [](std::string unit) {
+    if (const auto area = unit.find(" m^-2"); area != std::string::npos) unit.erase(area, 5);
+    return unit;
+  });
+}
+
+}  // namespace sunfleck::h5
