@@ -20,6 +20,7 @@ namespace sunfleck {
 namespace {
 
 constexpr double pi = std::numbers::pi;
+constexpr double most_scale = 1e6;
 
 struct Object {
   std::string file, group;
@@ -41,6 +42,14 @@ class OpsReader {
  private:
   [[noreturn]] void fail(const std::string& found, const std::string& expected) const {
     throw InputError(location(file_, line_), found, expected);
+  }
+
+  double coordinate(std::string_view word, const char* what) const {
+    const double value = number(word, what);
+    if (!(std::fabs(value) <= farthest_coordinate))
+      fail(fmt::format("{} {}", what, in_quotes(word)),
+           fmt::format("a number from {:g} to {:g} m", -farthest_coordinate, farthest_coordinate));
+    return value;
   }
 
   double number(std::string_view word, const char* what) const {
@@ -120,7 +129,7 @@ class OpsReader {
     if (fields.size() < 6) fail(fmt::format("{} fields of the terrain", fields.size()), "T xOrigin yOrigin zOrigin xSize ySize flat");
     if (fields.size() > 6 && fields[6] != "flat")
       fail(in_quotes(fields[6]), "\"flat\"; other terrains are a mesh of [ground] in the scene file");
-    for (std::size_t i = 0; i < 5; ++i) terrain_[i] = number(fields[i + 1], "terrain");
+    for (std::size_t i = 0; i < 5; ++i) terrain_[i] = coordinate(fields[i + 1], "terrain");
     if (!(terrain_[3] > terrain_[0]) || !(terrain_[4] > terrain_[1]))
       fail(fmt::format("a terrain from {} {} to {} {}", terrain_[0], terrain_[1], terrain_[3], terrain_[4]), "boundaries above the origin");
     has_terrain_ = true;
@@ -136,10 +145,11 @@ class OpsReader {
     o.line = line_;
     o.group = group_;
     o.file = (std::filesystem::path(file_).parent_path() / fields[2]).string();
-    o.position = {number(fields[3], "x"), number(fields[4], "y"), number(fields[5], "z")};
+    o.position = {coordinate(fields[3], "x"), coordinate(fields[4], "y"), coordinate(fields[5], "z")};
     std::size_t at = 6;
     if (scaled_) o.scale = number(fields[at++], "scale");
-    if (o.scale < 0) fail(fmt::format("scale {}", o.scale), "a number above zero, or 0 for none");
+    if (o.scale < 0 || o.scale > most_scale)
+      fail(fmt::format("scale {}", o.scale), fmt::format("a number above zero and up to {:g}, or 0 for none", most_scale));
     if (o.scale == 0) o.scale = 1, ++without_scale_;
     for (double* angle : {&o.azimuth, &o.inclination, &o.turn}) {
       *angle = number(fields[at++], "angle");

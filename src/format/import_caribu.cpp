@@ -132,7 +132,7 @@ std::vector<LightDirection> read_light(const std::string& file) {
     if (!(towards.z > 0)) throw InputError(where, fmt::format("direction {} {} {}", v.x, v.y, v.z), "one that goes down (z below 0)");
     sum += energy;
     if (!(energy / towards.z <= brightest) || !(sum <= brightest))
-      throw InputError(where, fmt::format("energy {}", energy), fmt::format("a beam, and a sum of all, of at most {} W m^-2", brightest));
+      throw InputError(where, fmt::format("energy {}", energy), fmt::format("a beam, and a sum of all, of at most {:g} W m^-2", brightest));
     if (energy > 0) out.push_back({energy, towards, number});
   });
   if (out.empty()) throw InputError(file, "no light", "lines \"ENERGY VX VY VZ\" with an energy above zero");
@@ -196,7 +196,10 @@ class Caribu {
     std::array<double, 4> cell{};
     if (!pattern_.empty()) {
       cell = read_pattern(pattern_);
-      for (auto& x : cell) x *= metre;
+      for (auto& x : cell)
+        if (!(std::fabs(x *= metre) <= farthest_coordinate))
+          throw InputError(pattern_, fmt::format("{} m", x),
+                           fmt::format("coordinates from {:g} to {:g} m", -farthest_coordinate, farthest_coordinate));
       text_ += fmt::format("[domain]\nperiodic = [{}, {}, {}, {}]\n\n", cell[0], cell[1], cell[2], cell[3]);
     }
     const auto light = light_.empty() ? std::vector<LightDirection>{{1.0, {0, 0, 1}, 0}} : read_light(light_);

@@ -124,8 +124,8 @@ struct LeftOut {
 
   std::string note(const std::string& file, const std::string& attribute, Kind kind) const {
     const char* expected = kind == Kind::boolean ? "true or false" : kind == Kind::integer ? "a whole number" : "a finite number";
-    return fmt::format("{}: {} ({}) is not {}: left out{}", location(file, line, attribute), example,
-                       kind == Kind::unknown ? "of no class" : "by its class in attributeBDD", expected,
+    return fmt::format("{}: {} is not {}{}: left out{}", location(file, line, attribute), example, expected,
+                       kind == Kind::unknown ? "" : ", as the class of the attribute says",
                        count > 1 ? fmt::format(", as are {} more of this attribute", count - 1) : "");
   }
 };
@@ -333,8 +333,7 @@ class OpfReader {
     const std::string name = node.name();
     const auto listed = kinds_.find(name);
     const Kind kind = listed == kinds_.end() ? Kind::unknown : listed->second;
-    if (kind != Kind::text && says_nothing(word)) return;
-    if (word.empty()) return;
+    if (word.empty() || (kind != Kind::text && (word == "NA" || word == "NaN"))) return;
     auto value = value_of(word, kind);
     if (!value) return leave_out(node, name, kind, word);
     if (name == "Name" && std::holds_alternative<std::string>(*value)) plant_.structures[structure].name = word;

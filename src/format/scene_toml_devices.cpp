@@ -16,7 +16,7 @@ namespace sunfleck {
 namespace {
 
 double strength_value(const TomlValue& value) {
-  return value.number(0, brightest);
+  return value.up_to(brightest);
 }
 
 Vec3 vector(const TomlValue& value, const char* names) {

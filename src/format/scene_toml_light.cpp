@@ -20,7 +20,7 @@ namespace {
 constexpr double degree = 3.14159265358979323846 / 180.0;
 
 double irradiance_value(const TomlValue& value) {
-  return value.number(0, brightest);
+  return value.up_to(brightest);
 }
 
 /// Where the sun stands, also below the horizon.
@@ -68,7 +68,7 @@ Shares split(const TomlValue& global, const SunPosition& sun, Scene& scene) {
       read_per_band(global.need("irradiance", "the global irradiance per band, on a horizontal plane"), scene, irradiance_value);
   double shortwave = 0;
   if (const auto given = global.get("shortwave")) {
-    shortwave = given->number(0, brightest, "W m^-2");
+    shortwave = given->up_to(brightest, "W m^-2");
   } else {
     for (std::size_t b = 0; b < per_band.size(); ++b) {
       if (scene.band_units[b] != "W m^-2")
@@ -187,7 +187,7 @@ void read_light(const TomlValue& root, Scene& scene) {
     state.name = name ? name->text() : fmt::format("state {}", scene.states.size() + 1);
     if (!seen.insert(state.name).second)
       (name ? *name : table).fail(fmt::format("the name \"{}\" twice", state.name), "a name for every state");
-    if (const auto duration = table.get("duration_s")) state.duration_s = duration->number(0, longest_duration_s, "seconds");
+    if (const auto duration = table.get("duration_s")) state.duration_s = duration->up_to(longest_duration_s, "seconds");
     scene.states.push_back(std::move(state));
   }
   if (scene.states.empty()) states->fail("at least one state");

@@ -19,7 +19,7 @@ namespace {
 constexpr const char* columns_of_sky = "x, y, z (towards the sky) or elevation, azimuth (from north over east) [degrees], and radiance";
 
 /// Directions and radiances as rows come in.
-struct Rows {
+struct SkyRows {
   std::vector<Vec3> directions;
   std::vector<double> radiances;
 
@@ -57,12 +57,12 @@ SkyColumns read_sky_header(const std::vector<std::string_view>& cells, const std
   return columns;
 }
 
-Rows read_rows(const std::string& file) {
+SkyRows read_rows(const std::string& file) {
   std::vector<std::string> ignored;  // comments, of which nothing is kept
   const std::string text = read_text(file, ignored);
   Lines lines(text);
   SkyColumns columns;
-  Rows rows;
+  SkyRows rows;
   for (std::string_view line; lines.next(line);) {
     line = Words(line.substr(0, line.find('#'))).rest();
     if (line.empty()) continue;
@@ -101,10 +101,10 @@ std::shared_ptr<const SkyTable> read_sky_table(const TomlValue& sky, const Scene
                      "one of them, with the directions and radiances of the sky");
   if (file) {
     const std::string path = read_path(*file, scene, "a CSV file with a sky's directions and radiances");
-    Rows rows = read_rows(path);
+    SkyRows rows = read_rows(path);
     return std::make_shared<const SkyTable>(std::move(rows.directions), std::move(rows.radiances), path);
   }
-  Rows rows;
+  SkyRows rows;
   if (!directions->is_array()) directions->fail("an array of [x, y, z, radiance]");
   for (const auto& row : directions->items()) {
     const auto v = row.numbers(4, "x, y, z towards the sky, radiance");

@@ -155,6 +155,12 @@ double TomlValue::number(double low, double high, const std::string& unit) const
   fail(fmt::format("a number from {} to {}{}", low, high, suffix));
 }
 
+double TomlValue::up_to(double most, const std::string& unit) const {
+  const double value = number(0, std::numeric_limits<double>::infinity(), unit);
+  if (value > most) fail(fmt::format("at most {:g}{}", most, unit.empty() ? "" : " " + unit));
+  return value;
+}
+
 double TomlValue::positive(const std::string& unit) const {
   const double value = number();
   if (!(value > 0)) fail("a number above zero" + (unit.empty() ? "" : " " + unit));

@@ -51,6 +51,7 @@ class TomlValue {
 
   double number() const;                                                       ///< finite, integer or float
   double number(double low, double high, const std::string& unit = {}) const;  ///< in [low, high]
+  double up_to(double most, const std::string& unit = {}) const;               ///< from zero to a limit that few know of
   double positive(const std::string& unit = {}) const;                         ///< > 0
   std::int64_t integer(std::int64_t low, std::int64_t high) const;
   bool flag() const;

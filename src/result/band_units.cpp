@@ -1,6 +1,7 @@
 #include "result/band_units.hpp"
 
 #include <algorithm>
+#include <sstream>
 
 namespace sunfleck::h5 {
 
@@ -30,6 +31,19 @@ std::string power_unit(const Scene& scene) {
     if (const auto area = unit.find(" m^-2"); area != std::string::npos) unit.erase(area, 5);
     return unit;
   });
+}
+
+std::string squared(const std::string& unit) {
+  std::istringstream words(unit);
+  std::string text;
+  for (std::string word; words >> word;) {
+    const bool comma = word.back() == ',';
+    if (comma) word.pop_back();
+    const auto power = word.find('^');
+    const int exponent = power == std::string::npos ? 1 : std::stoi(word.substr(power + 1));
+    text += (text.empty() ? "" : " ") + word.substr(0, power) + "^" + std::to_string(2 * exponent) + (comma ? "," : "");
+  }
+  return text;
 }
 
 }  // namespace sunfleck::h5

@@ -11,5 +11,7 @@ namespace sunfleck::h5 {
 std::string irradiance_unit(const Scene& scene);
 /// The same without the area: "W" or "umol s^-1".
 std::string power_unit(const Scene& scene);
+/// Of variances: "W^2 m^-4".
+std::string squared(const std::string& unit);
 
 }  // namespace sunfleck::h5

@@ -1,5 +1,7 @@
 #include "result/organ_rows.hpp"
 
+#include "result/band_units.hpp"
+
 namespace sunfleck::h5 {
 
 namespace {
@@ -89,7 +91,7 @@ void OrganRows::end() {
     if (variance_rows_.empty()) {
       variance_group_ = open_or_make_group(file_, file_.id(), "variance");
       variance_rows_.emplace_back(file_, queue_, variance_group_.get(), "organs", H5T_NATIVE_FLOAT,
-                                  RowDataset::Shape{states_, rows_.placed().organs, {bands_}}, "square of that of /organs/absorbed");
+                                  RowDataset::Shape{states_, rows_.placed().organs, {bands_}}, squared(power_unit(rows_.scene())));
     }
     append(variance_rows_, variance_, bands_, false);
   }

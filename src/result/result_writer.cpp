@@ -215,7 +215,7 @@ class ResultWriter::Impl {
       if (variance_.empty()) {
         variance_group_ = h5::open_or_make_group(file_, file_.id(), "variance");
         variance_.emplace_back(file_, queue_, variance_group_.get(), "facets", H5T_NATIVE_FLOAT,
-                               RowDataset::Shape{states_, rows_.placed().facets, {bands_}}, "square of that of /facets/absorbed");
+                               RowDataset::Shape{states_, rows_.placed().facets, {bands_}}, h5::squared(h5::irradiance_unit(rows_.scene())));
       }
       variance_.front().append(s, variance, count);
     }

@@ -48,12 +48,15 @@ class Check {
       fail("band_units", fmt::format("{} units", scene_.band_units.size()), fmt::format("one per band, {}", scene_.bands.size()));
   }
 
+  void zero_or_more(double value, double most, const std::string& unit, const std::string& key) const {
+    if (!(value >= 0) || std::isinf(value)) fail(key, fmt::format("{}", value), "a finite number of zero or more" + unit);
+    if (value > most) fail(key, fmt::format("{}", value), fmt::format("at most {:g}{}", most, unit));
+  }
+
   void irradiance(const std::vector<double>& values, const std::string& key) const {
     if (values.size() != scene_.bands.size())
       fail(key, fmt::format("{} values", values.size()), fmt::format("one per band, {}", scene_.bands.size()));
-    for (std::size_t b = 0; b < values.size(); ++b)
-      if (!(values[b] >= 0 && values[b] <= brightest))
-        fail(key + "." + scene_.bands[b], fmt::format("{}", values[b]), fmt::format("a number from 0 to {}", brightest));
+    for (std::size_t b = 0; b < values.size(); ++b) zero_or_more(values[b], brightest, "", key + "." + scene_.bands[b]);
   }
 
   void light() const {
@@ -61,8 +64,7 @@ class Check {
     for (std::size_t s = 0; s < scene_.states.size(); ++s) {
       const auto& state = scene_.states[s];
       const std::string key = fmt::format("state[{}]", s);
-      if (!(state.duration_s >= 0 && state.duration_s <= longest_duration_s))
-        fail(key + ".duration_s", fmt::format("{}", state.duration_s), fmt::format("a number from 0 to {} seconds", longest_duration_s));
+      zero_or_more(state.duration_s, longest_duration_s, " seconds", key + ".duration_s");
       if (state.sun) {
         const auto& sun = *state.sun;
         if (!(std::abs(glm::length(sun.direction) - 1.0) < 1e-6))
@@ -118,7 +120,7 @@ class Check {
     } else {
       for (const double v : {ground.size[0], ground.size[1]})
         if (!(v > 0 && v <= 2 * farthest_coordinate))
-          fail("ground.size", fmt::format("{}", v), fmt::format("a length above zero and up to {} m", 2 * farthest_coordinate));
+          fail("ground.size", fmt::format("{}", v), fmt::format("a length above zero and up to {:g} m", 2 * farthest_coordinate));
       for (const double v : {ground.centre[0], ground.centre[1]}) near(v, "ground.center");
       near(ground.height, "ground.height");
       if (ground.cells[0] == 0 || ground.cells[1] == 0) fail("ground.cells", "0", "at least one cell along x and y");
@@ -128,7 +130,7 @@ class Check {
 
   void near(double v, const std::string& key) const {
     if (!(std::abs(v) <= farthest_coordinate))
-      fail(key, fmt::format("{}", v), fmt::format("coordinates from {} to {} m", -farthest_coordinate, farthest_coordinate));
+      fail(key, fmt::format("{}", v), fmt::format("coordinates from {:g} to {:g} m", -farthest_coordinate, farthest_coordinate));
   }
 
   /// What names of the scene must be, so that every output holds them on one line.

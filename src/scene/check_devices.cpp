@@ -25,14 +25,15 @@ double mesh_area(const Mesh& mesh) {
 
 void check_near(const Scene& scene, const std::string& key, const std::optional<double>& value) {
   if (value && !(std::abs(*value) <= farthest_coordinate))
-    fail(scene, key, fmt::format("{}", *value), fmt::format("a number from {} to {} m", -farthest_coordinate, farthest_coordinate));
+    fail(scene, key, fmt::format("{}", *value), fmt::format("a number from {:g} to {:g} m", -farthest_coordinate, farthest_coordinate));
 }
 
 void check_extent(const Scene& scene, const std::string& key, const std::optional<std::array<double, 2>>& size,
                   const std::optional<std::array<double, 2>>& centre) {
   for (std::size_t i = 0; i < 2; ++i) {
     if (size && !((*size)[i] > 0 && (*size)[i] <= 2 * farthest_coordinate))
-      fail(scene, key + ".size", fmt::format("{}", (*size)[i]), fmt::format("a length above zero and up to {} m", 2 * farthest_coordinate));
+      fail(scene, key + ".size", fmt::format("{}", (*size)[i]),
+           fmt::format("a length above zero and up to {:g} m", 2 * farthest_coordinate));
     if (centre) check_near(scene, key + ".center", (*centre)[i]);
   }
 }
@@ -47,8 +48,10 @@ void check_lamps(const Scene& scene) {
     if (lamp.strength.size() != scene.bands.size())
       fail(scene, strength, fmt::format("{} values", lamp.strength.size()), fmt::format("one per band, {}", scene.bands.size()));
     for (std::size_t b = 0; b < lamp.strength.size(); ++b)
-      if (!(lamp.strength[b] >= 0 && lamp.strength[b] <= brightest))
-        fail(scene, strength + "." + scene.bands[b], fmt::format("{}", lamp.strength[b]), fmt::format("a number from 0 to {}", brightest));
+      if (!(lamp.strength[b] >= 0) || std::isinf(lamp.strength[b]))
+        fail(scene, strength + "." + scene.bands[b], fmt::format("{}", lamp.strength[b]), "a finite number of zero or more");
+      else if (lamp.strength[b] > brightest)
+        fail(scene, strength + "." + scene.bands[b], fmt::format("{}", lamp.strength[b]), fmt::format("at most {:g}", brightest));
     if (lamp.photometry) {
       if (!lamp.by_power) fail(scene, key + ".exitance", "an exitance of a photometric file", "the power of the lamp");
       if (!(lamp.photometry->per_candela > 0))
@@ -101,7 +104,7 @@ void check_sensors(const Scene& scene) {
     } else if (const auto* profile = std::get_if<SensorProfile>(&sensor.shape)) {
       if (!(profile->step > 0 && profile->step <= farthest_coordinate))
         fail(scene, key + ".profile.step", fmt::format("{}", profile->step),
-             fmt::format("a length above zero and up to {} m", farthest_coordinate));
+             fmt::format("a length above zero and up to {:g} m", farthest_coordinate));
       check_near(scene, key + ".profile.low", profile->low);
       check_near(scene, key + ".profile.high", profile->high);
       check_extent(scene, key + ".profile", profile->size, profile->centre);

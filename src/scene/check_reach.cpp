@@ -88,7 +88,7 @@ double reach_of(const Mesh& mesh) {
 void check_reach(const Scene& scene, const std::string& key, double reach) {
   if (!(reach <= farthest_coordinate))
     throw InputError(location(scene.file, 0, key), fmt::format("parts as far as {:.4g} m from the origin", reach),
-                     fmt::format("coordinates from {} to {} m", -farthest_coordinate, farthest_coordinate));
+                     fmt::format("coordinates from {:g} to {:g} m", -farthest_coordinate, farthest_coordinate));
 }
 
 void check_reach(const Scene& scene) {

@@ -33,10 +33,34 @@ TEST_CASE("Broken OBJ files are named with their line", "[format][obj]") {
   CHECK(message("v 0 1\n") == "bad.obj:1: found a vertex with 2 coordinates; expected three numbers");
   CHECK(message("") == "bad.obj: found no face; expected at least one triangle or polygon");
   CHECK(message(three.c_str()) == "bad.obj: found no face; expected at least one triangle or polygon");
-  CHECK(message("mtllib ../../secret.mtl\n") ==
-        "bad.obj:1: mtllib: found \"../../secret.mtl\"; expected a file in the folder of the OBJ or below");
-  CHECK(message("mtllib a.mtl ../b.mtl\n") == "bad.obj:1: mtllib: found \"../b.mtl\"; expected a file in the folder of the OBJ or below");
-  CHECK(message("mtllib /etc/passwd\n") == "bad.obj:1: mtllib: found \"/etc/passwd\"; expected a file in the folder of the OBJ or below");
+}
+
+TEST_CASE("A material library elsewhere is not opened, and worth a note", "[format][obj]") {
+  const auto notes = [](const std::string& head) {
+    const TextFile file("p.obj", head + three + "f 1 2 3\n");
+    return read_plant(file.path).notes;
+  };
+  CHECK(notes("mtllib p.mtl\nmtllib sub folder/p.mtl\n").empty());
+  for (const char* line : {"mtllib ../../secret.mtl\n", "mtllib /etc/passwd\n", "mtllib a.mtl ../b.mtl\n"}) {
+    INFO(line);
+    REQUIRE(notes(line).size() == 1);
+    CHECK(notes(line)[0].find("p.obj: mtllib names a file outside the folder of the OBJ: material libraries are not needed") !=
+          std::string::npos);
+  }
+  CHECK(notes("mtllib /a.mtl\nmtllib /b.mtl\n").size() == 1);
+}
+
+TEST_CASE("A backslash at the end of a comment or a name swallows nothing; numbers go on", "[format][obj]") {
+  for (const char* line :
+       {"# from C:\\plants\\\n", "mtllib C:\\plants\\\n", "g leaf\\\n", "o leaf\\\n", "usemtl a\\\n", "v 9 9 9 # C:\\\n", "\\\n"}) {
+    const TextFile file("p.obj", line + three + "f -3 -2 \\\n -1\nf -3 -2 -1 # C:\\\nf -1 -2 -3\n");
+    INFO(line);
+    const Plant plant = read_plant(file.path);
+    CHECK(plant.facet_count() == 3);
+    CHECK(plant.area() == Approx(1.5));
+  }
+  const TextFile named("p.obj", "g leaf\\\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  CHECK(read_plant(named.path).structures.at(1).name == "leaf\\");
 }
 
 TEST_CASE("A missing file, a folder and an unknown suffix are refused", "[format]") {

@@ -72,14 +72,13 @@ TEST_CASE("The sun's place is given once and whole", "[hostile][scene]") {
 TEST_CASE("Skies that this version does not know are refused by name", "[hostile][scene]") {
   CHECK(message("[sky]\nmodel = \"perez\"\nirradiance = { PAR = 1 }\n") ==
         "scene.toml:3: sky.model: found \"perez\", which this version does not support; expected one of uniform, standard_overcast, clear, "
-        "sphere");
-  CHECK(message("[sky]\nmodel = \"file\"\nirradiance = { PAR = 1 }\n") ==
-        "scene.toml:3: sky.model: found \"file\", which this version does not support; expected one of uniform, standard_overcast, clear, "
+        "file, "
         "sphere");
   CHECK(message("[sky]\nmodel = \"unifrom\"\nirradiance = { PAR = 1 }\n") ==
-        "scene.toml:3: sky.model: found \"unifrom\"; expected one of uniform, standard_overcast, clear, sphere; did you mean \"uniform\"?");
+        "scene.toml:3: sky.model: found \"unifrom\"; expected one of uniform, standard_overcast, clear, file, sphere; did you mean "
+        "\"uniform\"?");
   CHECK(message("[sky]\nirradiance = { PAR = 1 }\n") ==
-        "scene.toml:2: sky.model: found nothing; expected one of uniform, standard_overcast, clear, sphere");
+        "scene.toml:2: sky.model: found nothing; expected one of uniform, standard_overcast, clear, file, sphere");
   CHECK(message("[sky]\nmodel = \"uniform\"\n") ==
         "scene.toml:2: sky.irradiance: found nothing; expected the irradiance per band, on an unobstructed horizontal plane");
   CHECK(message("[sky]\nmodel = \"clear\"\nirradiance = { PAR = 1 }\n") ==
@@ -113,4 +112,35 @@ TEST_CASE("Global radiation needs all that its split takes", "[hostile][scene]")
   CHECK(message("[sun]\nlatitude = 43\nlongitude = 3\ntime = \"2026-06-21T12:00:00Z\"\n" + sky +
                 "[global]\nday = 100\nirradiance = { PAR = 400 }\n") ==
         "scene.toml:9: global.day: found `day` beside the sun's `time`; expected one date");
+}
+
+TEST_CASE("A sky of directions is refused with file, line and key", "[hostile][scene][sky]") {
+  const auto sky = [](const std::string& keys, const std::string& csv = "") {
+    const SceneFiles files("bands = [\"PAR\"]\n[sky]\nmodel = \"file\"\nirradiance = { PAR = 1 }\n" + keys, {{"sky.csv", csv}});
+    return files.message();
+  };
+  CHECK(sky("") ==
+        "scene.toml:2: sky: found neither `file` nor `directions`; expected one of them, with the directions and radiances of the sky");
+  CHECK(sky("file = \"sky.csv\"\ndirections = [[0, 0, 1, 1]]\n").find("scene.toml:2: sky: found both `file` and `directions`") == 0);
+  CHECK(sky("directions = [[0, 0, 1]]\n").find("scene.toml:5: sky.directions[0]: found an array of 3; expected an array of 4 numbers") ==
+        0);
+  CHECK(sky("directions = [[0, 0, -1, 1]]\n") ==
+        "scene.toml:5: sky.directions[0]: found [0, 0, -1]; expected a direction at or above the horizon");
+  CHECK(sky("directions = [[0, 0, 1, 0]]\n") ==
+        "scene.toml:5: sky.directions: found radiances that are all zero; expected at least one above zero");
+  const std::string file = "file = \"sky.csv\"\n";
+  CHECK(sky(file, "x,y,z,radiance\n0,0,1,1\n0.5,0,0.5,2 # warm\n") == "");
+  CHECK(sky(file,
+            "\xEF\xBB\xBF"
+            "elevation,azimuth,radiance\n90,0,1\n30,180,2\n") == "");
+  CHECK(sky(file, "") ==
+        "sky.csv: found no direction; expected a header and rows of x, y, z (towards the sky) or elevation, azimuth (from north "
+        "over east) [degrees], and radiance");
+  CHECK(sky(file, "0,0,1,1\n").find("sky.csv:1: found column \"0\"; expected each once of x, y, z") == 0);
+  CHECK(sky(file, "x,y,radiance\n0,0,1\n").find("sky.csv:1: found no column z") == 0);
+  CHECK(sky(file, "x,y,z,radiance\n0,0,1\n") == "sky.csv:2: found 3 cells; expected 4, as in the first line");
+  CHECK(sky(file, "elevation,azimuth,radiance\n95,0,1\n") == "sky.csv:2: found elevation 95; expected 0 to 90 degrees");
+  CHECK(sky(file, "x,y,z,radiance\n0,0,1,-1\n") == "sky.csv:2: found radiance -1; expected zero or more");
+  CHECK(message("[sky]\nmodel = \"uniform\"\nfile = \"sky.csv\"\nirradiance = { PAR = 1 }\n") ==
+        "scene.toml:4: sky.file: found `file` beside model = \"uniform\"; expected model = \"file\"");
 }

@@ -140,3 +140,40 @@ TEST_CASE("OPF: the coffee plant", "[format][opf][extra]") {
   CHECK(zero > 0);                                   // kept as facets
   CHECK(leaf_area == Approx(5.948).margin(0.0005));  // m^2, published to three decimals
 }
+
+TEST_CASE("OPF: an attribute that its class does not allow is left out with one note a kind; light does not need it", "[format][opf]") {
+  const auto read = [](const std::string& attributes) {
+    const TextFile file("a.opf", opf("<topology class=\"Plant\"><decomp class=\"Leaf\" id=\"2\">" + attributes +
+                                     geometry(0, identity, "1", "1") + "</decomp></topology>"));
+    return read_plant(file.path);
+  };
+  for (const char* odd :
+       {"<Length>1.0\t2.0\t3.0</Length>", "<Length>missing</Length>", "<Length>null</Length>", "<Length>Infinity</Length>",
+        "<Length>0,5</Length>", "<Length>2026-06-21</Length>", "<Rank>3.5</Rank>", "<Rank>99999999999999999999</Rank>",
+        "<Rank>missing</Rank>", "<Alive>maybe</Alive>", "<Unlisted>inf</Unlisted>"}) {
+    INFO(odd);
+    const Plant plant = read(odd);
+    CHECK(plant.facet_count() == 1);
+    REQUIRE(plant.notes.size() == 1);
+    CHECK(plant.notes[0].find(": left out") != std::string::npos);
+    for (const char* name : {"Length", "Rank", "Alive", "Unlisted"}) CHECK(plant.attribute(1, name) == nullptr);
+  }
+  for (const char* nothing : {"<Length>NaN</Length>", "<Length>NA</Length>", "<Rank/>", "<Name>2026-06-21</Name>"}) {
+    INFO(nothing);
+    CHECK(read(nothing).notes.empty());
+  }
+  CHECK(std::get<std::int64_t>(*read("<Rank>3.0</Rank>").attribute(1, "Rank")) == 3);
+  CHECK(std::get<bool>(*read("<Alive>1</Alive>").attribute(1, "Alive")));
+  std::string many;
+  for (int i = 0; i < 1000; ++i) many += "<decomp class=\"Leaf\"><Length>0,5</Length></decomp>";
+  const auto notes = read(many).notes;
+  REQUIRE(notes.size() == 1);
+  CHECK(notes[0].find("\"0,5\" is not a finite number, as the class of the attribute says: left out, as are 999 more of this attribute") !=
+        std::string::npos);
+  const TextFile odd_id("a.opf",
+                        opf("<topology class=\"Plant\" scale=\"one\" id=\"1.0\">" + geometry(0, identity, "1", "1") + "</topology>"));
+  const Plant plant = read_plant(odd_id.path);
+  CHECK(plant.structures[0].name == "Plant_1");
+  CHECK(plant.attribute(0, "scale") == nullptr);
+  CHECK(plant.notes.size() == 1);
+}

@@ -102,3 +102,20 @@ TEST_CASE("An OPF gains numbers and keeps everything else", "[format][opf][expor
   CHECK(message_of(file, [&] { add_to_opf(file.path + "x", {}, 0, out.path); }) ==
         "in.opfx: found no such file; expected an existing file");
 }
+
+TEST_CASE("A plant of another format keeps the names of its organs as OPF, and attributes whose elements would be one",
+          "[format][opf][export]") {
+  const TextFile obj("p.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\ng flag leaf\nf 1 2 3\ng blé\nf 1 3 2\n"), file("out.opf", "");
+  Plant plant = read_plant(obj.path);
+  set_attribute(plant, 1, "a b", 1.0);
+  set_attribute(plant, 1, "a_b", 2.0);
+  set_attribute(plant, 1, "geometry", 3.0);
+  write_opf(plant, {{"area_m2"}, {{none, 1, 2}}}, file.path);
+  const Plant back = read_plant(file.path);
+  CHECK(back.structures.at(1).name == "flag leaf");
+  CHECK(back.structures.at(2).name == "blé");
+  CHECK(std::get<double>(*back.attribute(1, "a_b_2")) == 1.0);
+  CHECK(std::get<double>(*back.attribute(1, "a_b")) == 2.0);
+  CHECK(std::get<double>(*back.attribute(1, "_geometry")) == 3.0);
+  CHECK(back.facet_count() == 2);
+}
