@@ -164,6 +164,20 @@ const std::map<std::string, std::function<void(Bytes)>>& readers() {
          check_scene(scene);
          (void)count(scene);
        }},
+      {"sky",
+       [](Bytes b) {
+         folder().put("fuzzed_sky.csv", b);
+         static const std::string scene = folder().put("with_sky.toml",
+                                                       "bands = [\"PAR\"]\n[sky]\nmodel = \"file\"\nfile = \"fuzzed_sky.csv\"\nirradiance "
+                                                       "= { PAR = 1.0 }\n[optics.leaf]\nreflectance = { "
+                                                       "PAR = 0.1 }\n[[plant]]\nname = \"leaf\"\nfile = \"leaf.obj\"\noptics = { \"*\" = "
+                                                       "\"leaf\" }\nplace = [ { position = [0, 0, 0] } ]\n");
+         const Scene read = read_scene(scene);
+         check_scene(read);
+         for (const Vec3& d : {Vec3{0, 0, 1}, Vec3{0.6, 0, 0.8}, Vec3{0, -1, 1e-300}})
+           if (const double r = read.states.at(0).sky->relative_radiance(d); !(r >= 0) || !std::isfinite(r))
+             throw std::logic_error("a sky that shines without measure");
+       }},
       {"species", [](Bytes b) { (void)read_species(folder().put("species.toml", b)); }},
   };
   return all;
