@@ -1,4 +1,11 @@
 #include "cli/info_result.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+
+#include <sunfleck/result/result_reader.hpp>
+
 #include "cli/json_text.hpp"
 #include "cli/solve_table.hpp"
 #include "cli/text_units.hpp"
