@@ -32,7 +32,7 @@ Plant read_by_suffix(const std::string& file) {
 void clean_names(Plant& plant) {
   std::size_t changed = 0;
   const auto clean = [&](std::string& name) {
-    if (std::string cleaned = clean_name(name); cleaned != name) ++changed, name = std::move(cleaned);
+    if (!is_utf8(name) || has_control_character(name)) ++changed, name = clean_name(name);
   };
   clean(plant.name);
   for (auto* names : {&plant.types, &plant.attribute_names, &plant.materials})
