@@ -38,8 +38,8 @@ std::string read_xml(const std::string& file, std::vector<std::string>& notes) {
   if (text.size() != whole.size()) return text;  // a mark says more than the declaration
   const std::string name = declared(text);
   if (any_of(name, {"iso-8859-1", "latin1", "latin-1", "windows-1252", "cp1252"})) return from_windows_1252(text);
-  if (!name.empty() && !any_of(name, {"utf-8", "utf8", "us-ascii", "ascii", "utf-16", "utf16", "utf-32"})  // UTF-16 is known by its bytes
-  )
+  // UTF-16 is known by its bytes, whatever the declaration says
+  if (!name.empty() && !any_of(name, {"utf-8", "utf8", "us-ascii", "ascii", "utf-16", "utf16", "utf-32"}))
     return from_charset(text, name, location(file, 1, "encoding"));
   if (is_utf8(text)) return text;
   notes.push_back(fmt::format("{}: its text is no UTF-8{} and is taken for Windows-1252 (Latin-1)", file,
