@@ -34,6 +34,7 @@ void export_opf(const Result& result, const ExportOptions& options, Progress& pr
   } else {
     Plant plant = *entry.plant;
     plant.file = result.file();
+    for (std::size_t s = 0; s < plant.structures.size(); ++s) plant.structures[s].name = copy.organ_names[s];  // results keep those alone
     plant.materials.clear();
     for (const auto& material : result.materials()) plant.materials.push_back(material.name);
     for (std::size_t s = 0; s < plant.shapes.size(); ++s) plant.shapes[s].material = entry.shape_optics[s];

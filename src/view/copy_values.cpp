@@ -71,12 +71,14 @@ CopyValues copy_values(const Result& result, const ResultGeometry& geometry, con
         if (out.plant == geometry.plants.size())
           throw InputError(location(result.file(), 0, "/organs/plant"), "\"" + plant + "\"", "a plant of /geometry/plant_name");
         const std::size_t structures = geometry.plants[out.plant].plant->structures.size();
+        out.organ_names.assign(structures, {});
         out.values.assign(out.names.size(), std::vector<double>(structures, std::numeric_limits<double>::quiet_NaN()));
       }
       const auto structure = organs.structure[i];
       if (structure >= out.values[0].size())
         throw InputError(location(result.file(), 0, "/organs/structure"), "row " + std::to_string(structure),
                          "a row below " + std::to_string(out.values[0].size()));
+      out.organ_names[structure] = names.names[organs.name[i]];
       std::size_t c = 0;
       const auto put = [&](double value) { out.values[c++][structure] = value; };
       put(area[i]);

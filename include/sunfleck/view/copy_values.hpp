@@ -15,6 +15,7 @@ struct CopyValues {
   std::string placement;                    ///< "tile[3]/coffee[1]"
   std::size_t plant = 0;                    ///< row of ResultGeometry::plants
   std::vector<std::string> names;           ///< area_m2, then the columns of export_csv; letters, digits and _.- only
+  std::vector<std::string> organ_names;     ///< [structure]; empty for structures that are no organ
   std::vector<std::vector<double>> values;  ///< [column][structure]; NaN for structures that are no organ
 };
 
