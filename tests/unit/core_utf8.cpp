@@ -19,7 +19,7 @@ TEST_CASE("Bytes that are no UTF-8 are letters of Windows-1252", "[core]") {
 
 TEST_CASE("Control characters in names are found and become blanks", "[core]") {
   CHECK_FALSE(has_control_character("feuille été 红"));
-  for (const std::string text : {std::string("a\nb"), std::string("a\0b", 3), std::string("a\x7F"), std::string("a\xC2\x85")}) {
+  for (const std::string& text : {std::string("a\nb"), std::string("a\0b", 3), std::string("a\x7F"), std::string("a\xC2\x85")}) {
     CHECK(has_control_character(text));
     CHECK_FALSE(has_control_character(clean_name(text)));
   }
