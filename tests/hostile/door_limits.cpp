@@ -18,7 +18,7 @@ const std::string leaf = "g leaf\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
 
 struct Parts {
   std::string bands = "\"PAR\"", sun = "direction = [0, 0, 1]\nirradiance = { PAR = 10.0 }", place = "{ position = [0, 0, 0] }",
-              name = "leaf", more, obj = leaf, state;
+              name = "leaf", more = "", obj = leaf, state = "";
 };
 
 std::string message(const Parts& p) {

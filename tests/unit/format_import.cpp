@@ -1,6 +1,5 @@
 #include <catch2/catch.hpp>
 
-#include <cstring>
 #include <numbers>
 
 #include <fmt/format.h>
@@ -282,7 +281,7 @@ TEST_CASE("CARIBU files that are broken or do not belong together", "[format][im
               {"up.light", "1 0 0 1\n"},
               {"three.light", "1 0 0\n"},
               {"flat.light", "1e308 1e9 0 -1\n"},
-              {"bright.light", "1e308 0 0 -1\n\n1e308 0 0 -1e308\n"},
+              {"bright.light", "9e11 0 0 -1\n\n9e11 0 0 -1e308\n"},
               {"bad.8", "0 0 1\n"}});
   const auto message = [&](const std::vector<std::string>& names) { return files.message([&] { files.read(files.choice(names)); }); };
   CHECK(message({"plants.can", "a.opt"}) == "a.opt: found 1 species; expected species 2, which plants.can has");
@@ -292,9 +291,10 @@ TEST_CASE("CARIBU files that are broken or do not belong together", "[format][im
   CHECK(message({"plants.can", "d.opt"}).find("d.opt:2: found no reflectance of the upper side of species 1") == 0);
   CHECK(message({"plants.can", "e.opt"}) == "e.opt:1: found \"s\"; expected \"d\": diffuse, the only kind of surface there is here");
   CHECK(message({"plants.can", "up.light"}) == "up.light:1: found direction 0 0 1; expected one that goes down (z below 0)");
-  for (const char* line : {"flat.light:1", "bright.light:3"})
-    CHECK(message({"plants.can", std::string(line, std::strchr(line, ':'))}) ==
-          std::string(line) + ": found energy 1e+308; expected a beam, and a sum of all, of at most 1e+12 W m^-2");
+  CHECK(message({"plants.can", "flat.light"}) ==
+        "flat.light:1: found energy 1e+308; expected a beam, and a sum of all, of at most 1e+12 W m^-2");
+  CHECK(message({"plants.can", "bright.light"}) ==
+        "bright.light:3: found energy 900000000000; expected a beam, and a sum of all, of at most 1e+12 W m^-2");
   CHECK(message({"plants.can", "three.light"}).find("three.light:1: found") == 0);
   CHECK(message({"plants.can", "bad.8"}) == "bad.8: found 3 numbers; expected four: xmin ymin, and below xmax ymax");
   CHECK_THROWS_WITH(files.read(files.choice({"a.opt"})), "found no .can; expected one beside .opt, .light and .8");
