@@ -105,7 +105,8 @@ TEST_CASE("What is wrong with a scene in memory is said at the door", "[scene][m
         "scene in memory: ground.cells: found 0; expected at least one cell along x and y");
   CHECK(broken([](Scene& s) { s.ground->optics.transmittance[0] = 0.1f; }) ==
         "scene in memory: ground.optics.transmittance: found 0.1; expected 0: ground lets nothing through");
-  CHECK(broken([&](Scene& s) { s.ground->height = nan; }) == "scene in memory: ground.center: found nan; expected finite numbers");
+  CHECK(broken([&](Scene& s) { s.ground->height = nan; }) ==
+        "scene in memory: ground.height: found nan; expected coordinates from -1e+08 to 1e+08 m");
   CHECK(broken([](Scene& s) { s.plants[0].plant = nullptr; }) == "scene in memory: plant[0]: found no plant; expected a plant");
   CHECK(broken([](Scene& s) { s.plants[0].shape_optics[0] = 3; }) ==
         "scene in memory: plant[0].shape_optics: found row 3; expected a row of the scene's 1 optics");
