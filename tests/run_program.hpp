@@ -20,6 +20,7 @@ struct ProgramFate {
   int ignored_signal = 0;      ///< > 0: a signal that it finds ignored, as under nohup
   unsigned seconds = 0;        ///< > 0: SIGALRM ends it after so long, if it has not ended
   std::vector<std::string> environment;  ///< "NAME=value", beside what is there
+  std::size_t memory_bytes = 0;          ///< > 0: no more address space than this, as under ulimit -v
 };
 
 /// Runs build/.../sunfleck with the arguments given.

@@ -84,7 +84,9 @@ void estimate_band(std::size_t b, const OrganTotals& solved, const std::vector<C
     errors.push_back(error);
   }
   const ErrorEstimate estimate = estimate_error(errors);
-  const double mean = solved.plant_area > 0.0 ? mean_light(solved, b, irradiance) - estimate.bias : 0.0;
+  constexpr double least = 1e-3;  // of what is solved: where paths find next to no light, an error is large, not undefined
+  const double mean_solved = solved.plant_area > 0.0 ? mean_light(solved, b, irradiance) : 0.0;
+  const double mean = std::max(mean_solved - estimate.bias, least * mean_solved);
   const auto relative = [mean](double value) { return mean > 0.0 ? value / mean : 0.0; };  // no light at all: no error either
   out.rmse.push_back(relative(estimate.rmse));
   out.rmse_low.push_back(relative(estimate.low));

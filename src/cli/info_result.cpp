@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
+#include <sunfleck/result/plant_shares.hpp>
 #include <sunfleck/result/result_reader.hpp>
 
 #include "cli/json_text.hpp"
@@ -101,6 +102,16 @@ Json json_of(const Result& r) {
     json["states"].push_back(row);
   }
   add_devices(r, json);
+  if (const auto shares = plant_shares(r))
+    for (std::size_t p = 0; p < shares->names.size(); ++p) {
+      Json row{{"name", shares->names[p]}};
+      for (std::size_t s = 0; s < shares->states; ++s)
+        for (std::size_t b = 0; b < shares->bands; ++b) {
+          row["leaf"][r.bands()[b]].push_back(shares->leaf[shares->at(s, p, b)]);
+          row["other"][r.bands()[b]].push_back(shares->other[shares->at(s, p, b)]);
+        }
+      json["absorbed_by_plant"].push_back(row);
+    }
   json["facets"] = r.facet_count();
   json["organs"] = r.organ_count();
   for (const auto& name : datasets())
@@ -168,7 +179,8 @@ void print_result_info(const std::string& file, bool json) {
   const auto certificate = r.certificate();
   fmt::print("\n");
   std::fflush(stdout);
-  print_solve_table(scene, report, certificate ? &*certificate : nullptr);
+  const auto shares = plant_shares(r);
+  print_solve_table(scene, report, certificate ? &*certificate : nullptr, shares ? &*shares : nullptr);
 
   fmt::print("\ntimings\n");
   for (const auto& [name, seconds] : r.timings()) fmt::print("  {:<28}{:>9.3f} s\n", name, seconds);

@@ -1,47 +1,29 @@
 #include "cli/plan.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 
 #include <sunfleck/core/names.hpp>
+#include <sunfleck/instantiation/fineness.hpp>
 #include <sunfleck/instantiation/plan.hpp>
 #include <sunfleck/policy/policy_toml.hpp>
+#include <sunfleck/radiosity/fineness.hpp>
 #include <sunfleck/radiosity/plan.hpp>
 #include <sunfleck/scene/facets.hpp>
 
+#include "cli/bytes_of_scene.hpp"
 #include "cli/text_units.hpp"
 
 namespace sunfleck {
 
 namespace {
 
-/// Bytes of one row of an expanded scene: its own arrays, and irradiance and sunlit fraction of both sides under every state.
-std::uint64_t expanded_bytes_per_facet() {
-  return sizeof(Triangle) + sizeof(float) + 2 * sizeof(std::uint32_t);
-}
-std::uint64_t solution_bytes_per_facet(const Scene& scene) {
-  return scene.states.size() * 2 * (scene.band_count() + 1) * sizeof(float);
-}
-/// Bytes of one row of a result before compression: irradiance, absorbed, sunlit, area, centroid, organ.
-std::uint64_t result_bytes_per_facet(const Scene& scene) {
-  return scene.states.size() * (3 * scene.band_count() + 2) * sizeof(float) + sizeof(float) + 3 * sizeof(double) + sizeof(std::uint32_t);
-}
-
 bool transmits(const Scene& scene) {
   return std::any_of(scene.optics.begin(), scene.optics.end(), [](const Optics& o) {
     return std::any_of(o.transmittance.begin(), o.transmittance.end(), [](float t) { return t > 0.0f; });
   });
-}
-
-bool scatters(const Scene& scene) {
-  const auto positive = [](const std::vector<float>& values) {
-    return std::any_of(values.begin(), values.end(), [](float v) { return v > 0.0f; });
-  };
-  const auto any = [&](const Optics& o) {
-    return positive(o.reflectance_front) || positive(o.reflectance_back) || positive(o.transmittance);
-  };
-  return std::any_of(scene.optics.begin(), scene.optics.end(), any) || (scene.ground && any(scene.ground->optics));
 }
 
 /// Names of the states that have (or lack) a kind of light.
@@ -92,12 +74,14 @@ void add_devices(const Scene& scene, const std::string& method, std::vector<Plan
                                                          : "that gather the light of what they meet")});
 }
 
+PlanItem periodicity_item(const Scene& scene) {
+  if (!scene.periodic) return {"periodicity", false, "the scene is finite"};
+  return {"periodicity", true,
+          fmt::format("a cell of {:g} m x {:g} m repeats without end", scene.periodic->width(), scene.periodic->depth())};
+}
+
 void add_geometry(const Scene& scene, const SceneCounts& counts, std::vector<PlanItem>& items) {
-  if (scene.periodic)
-    items.push_back({"periodicity", true,
-                     fmt::format("a cell of {:g} m x {:g} m repeats without end", scene.periodic->width(), scene.periodic->depth())});
-  else
-    items.push_back({"periodicity", false, "the scene is finite"});
+  items.push_back(periodicity_item(scene));
   if (scene.ground)
     items.push_back({"ground", true, fmt::format("{} in the same system as the leaves", counted(counts.ground_facets, "facet", "facets"))});
   else
@@ -174,7 +158,7 @@ void add_policies(const Scene& scene, const std::string& method, const Instantia
 void add_instantiation(const Scene& scene, const PlacedScene& placed, const MethodChoice& choice, int threads, Progress& progress,
                        Plan& plan) {
   InstantiationSettings settings;
-  settings.density = instantiation_density(choice.quality);
+  settings.density = choice.fineness ? instantiation_density_at(*choice.fineness) : instantiation_density(choice.quality);
   settings.threads = threads;
   if (scene.solve.seed) settings.seed = *scene.solve.seed;
   const auto classes = classes_of_policies(scene);
@@ -214,20 +198,24 @@ void add_instantiation(const Scene& scene, const PlacedScene& placed, const Meth
     if (name == "at_once") plan.at_once = bytes;
 }
 
-/// Lines are gone when light is spread along the links, and then only there is light on every facet.
+/// Lines are gone when light is spread along the links, and then only there is light on every facet. The certificate comes when all that
+/// is gone.
 std::uint64_t most_at_once(const std::vector<PlanFigure>& memory) {
-  std::uint64_t always = 0, before = 0, after = 0;
+  std::uint64_t always = 0, solver = 0, before = 0, after = 0, certificate = 0;
   for (const auto& part : memory) {
     const bool later = part.name == "links" || part.name == "fields" || part.name == "light";
-    (part.name == "lines" ? before : later ? after : always) += part.amount;
+    const bool kept =
+        part.name == "program" || part.name == "plants" || part.name == "layout" || part.name == "facets" || part.name == "file";
+    (part.name == "certificate" ? certificate : part.name == "lines" ? before : later ? after : kept ? always : solver) += part.amount;
   }
-  return always + std::max(before, after);
+  return always + std::max(solver + std::max(before, after), certificate);
 }
 
 /// Elements, links and lines of the radiosity methods.
 void add_radiosity(const Scene& scene, const MethodChoice& choice, Progress& progress, Plan& plan) {
   if (choice.method == "reference") {
     plan.items.push_back({"elements", false, "the reference traces paths facet by facet, without elements or links"});
+    plan.at_once = most_at_once(plan.memory);
     return;
   }
   if (plan.counts.facets() > most_laid_out || plan.counts.facets() == 0) {
@@ -235,7 +223,7 @@ void add_radiosity(const Scene& scene, const MethodChoice& choice, Progress& pro
     return;
   }
   RadiositySettings settings;
-  settings.density = density_of(choice.quality);
+  settings.density = choice.fineness ? density_at(*choice.fineness) : density_of(choice.quality);
   settings.method = radiosity_method(choice.method);
   const FacetScene facets = expand(scene);
   if (facets.zero_area_facets == facets.size()) {
@@ -266,16 +254,7 @@ void add_radiosity(const Scene& scene, const MethodChoice& choice, Progress& pro
   add("links", "links", predicted.links);
 }
 
-}  // namespace
-
-std::uint64_t Plan::memory_total() const {
-  if (at_once > 0) return at_once;
-  std::uint64_t total = 0;
-  for (const auto& part : memory) total += part.amount;
-  return total;
-}
-
-Plan make_plan(const Scene& scene, const MethodChoice& choice, Progress& progress, std::uint64_t program, int threads) {
+Plan plan_of(const Scene& scene, const MethodChoice& choice, Progress& progress, std::uint64_t program, int threads) {
   refuse_depth(scene, choice.method);
   Plan plan;
   plan.choice = choice;
@@ -291,9 +270,18 @@ Plan make_plan(const Scene& scene, const MethodChoice& choice, Progress& progres
   if (program > 0) plan.memory.push_back({"program", "the program as it starts", program});
   if (!shares) {
     plan.memory.push_back({"plants", "plants as read", held_bytes(scene)});
-    plan.memory.push_back({"facets", "facets of all copies", facets * expanded_bytes_per_facet()});
+    plan.memory.push_back({"facets", "facets of all copies", expanded_bytes(plan.counts)});
     plan.memory.push_back({"light", "light on every facet", facets * solution_bytes_per_facet(scene)});
+    const std::uint64_t tree = tree_bytes(plan.counts);
+    if (choice.method == "reference")
+      plan.memory.push_back({"tree of rays", "tree of rays, to follow paths", tree});
+    else if (scene.solve.certificate.value_or(true))
+      plan.memory.push_back({"certificate", "tree of rays of the certificate, after the solve", tree});
   }
+  const bool all_open = scene.solve.only.empty() && scene.solve.stop_at.empty();
+  const std::uint64_t layout = all_open ? layout_bytes(plan.counts) : 0, file = all_open ? row_bytes(scene, plan.counts) : 0;
+  if (all_open) plan.memory.push_back({"layout", "copies, ground cells, and their names", layout});
+  if (all_open) plan.memory.push_back({"file", "sums and rows on their way into the file", file});
   plan.work = {{"facets", "facets", facets},
                {"organs", "organs", shares ? placed.organs : plan.counts.organs},
                {"result_bytes", "result bytes before compression", facets * result_bytes_per_facet(scene)}};
@@ -303,8 +291,65 @@ Plan make_plan(const Scene& scene, const MethodChoice& choice, Progress& progres
     add_policies(scene, choice.method, nullptr, plan.items);
     add_radiosity(scene, choice, progress, plan);
   }
-  if (shares) plan.at_once += program;
+  if (shares) plan.at_once += program + layout + file;
   return plan;
+}
+
+/// Ground that is this large is not laid out for a plan, but two smaller pieces of it, with cells of the same size about its middle.
+constexpr std::uint64_t most_ground_laid_out = 4'000'000;
+
+Scene with_less_ground(const Scene& scene, std::uint64_t facets) {
+  Scene out = scene;
+  const double all = 2.0 * scene.ground->cells[0] * scene.ground->cells[1], share = std::sqrt(static_cast<double>(facets) / all);
+  for (int axis = 0; axis < 2; ++axis) {
+    const auto cells = std::max(1u, static_cast<std::uint32_t>(std::lround(scene.ground->cells[axis] * share)));
+    out.ground->size[axis] *= static_cast<double>(cells) / scene.ground->cells[axis];
+    out.ground->cells[axis] = cells;
+  }
+  out.periodic.reset();  // the ground no longer fills the cell
+  return out;
+}
+
+/// What grows with the ground, grows in proportion to its facets.
+std::uint64_t extrapolated(std::uint64_t less, std::uint64_t more, double steps) {
+  const double grown = static_cast<double>(more) - static_cast<double>(less);
+  return static_cast<std::uint64_t>(std::llround(std::max(0.0, static_cast<double>(more) + std::max(0.0, grown) * steps)));
+}
+
+void extrapolate(const std::vector<PlanFigure>& less, std::vector<PlanFigure>& more, double steps) {
+  for (auto& figure : more)
+    for (const auto& other : less)
+      if (other.name == figure.name) figure.amount = extrapolated(other.amount, figure.amount, steps);
+}
+
+}  // namespace
+
+Plan make_plan(const Scene& scene, const MethodChoice& choice, Progress& progress, std::uint64_t program, int threads) {
+  const auto counts = count(scene);
+  if (!scene.ground || scene.ground->mesh || counts.ground_facets <= most_ground_laid_out)
+    return plan_of(scene, choice, progress, program, threads);
+  const Plan less = plan_of(with_less_ground(scene, most_ground_laid_out / 8), choice, progress, program, threads);
+  Plan plan = plan_of(with_less_ground(scene, most_ground_laid_out / 4), choice, progress, program, threads);
+  const auto grown = static_cast<double>(plan.counts.ground_facets - less.counts.ground_facets);
+  const double steps = static_cast<double>(counts.ground_facets - plan.counts.ground_facets) / grown;
+  extrapolate(less.memory, plan.memory, steps);
+  extrapolate(less.work, plan.work, steps);
+  plan.at_once = extrapolated(less.at_once, plan.at_once, steps);
+  plan.counts = counts;
+  for (auto& item : plan.items) {
+    if (item.name == "ground")
+      item.why = fmt::format("{} in the same system as the leaves", counted(counts.ground_facets, "facet", "facets"));
+    if (item.name == "periodicity" && scene.periodic) item = periodicity_item(scene);
+  }
+  plan.items.push_back({"prediction", true, "from two smaller pieces of the ground, in proportion to its facets"});
+  return plan;
+}
+
+std::uint64_t Plan::memory_total() const {
+  if (at_once > 0) return at_once;
+  std::uint64_t total = 0;
+  for (const auto& part : memory) total += part.amount;
+  return total;
 }
 
 }  // namespace sunfleck

@@ -6,10 +6,12 @@
 #include <algorithm>
 #include <atomic>
 #include <cstdlib>
+#include <cstring>
 #include <exception>
 #include <functional>
 #include <new>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -28,7 +30,7 @@ namespace sunfleck {
 
 namespace {
 
-enum ExitCode { done = 0, failed = 1, bad_input = 2, stopped = 4 };  // 3, not converged, is a verb's own answer
+enum ExitCode { done = 0, failed = 1, bad_input = 2, stopped = 4 };  // 3, not as asked, is a verb's own answer
 
 /// Options and what runs them, one per verb.
 struct Verbs {
@@ -67,7 +69,9 @@ class Program {
     app_.set_help_flag("-h,--help", "print this help and exit");
     app_.footer(
         "Each verb has its own help: sunfleck VERB --help. Data go to standard output, progress and messages to standard error.\n"
-        "Exit codes: 0 done, 1 output failed, 2 bad usage or input, 3 did not converge (the result is written), 4 stopped.");
+        "Exit codes: 0 done, 1 output failed or not enough memory, 2 bad usage or input, 3 did not converge or is not as accurate as "
+        "asked\n"
+        "(the result is written, its status says which), 4 stopped.");
     add("solve", "the light that every facet and organ absorbs, into a result file", define_solve, verbs_.solve, verb_solve);
     add("plan", "what a solve would do and leave out, its memory and work, without solving", define_plan, verbs_.plan, verb_plan);
     add("compare", "the error of one result against another", define_compare, verbs_.compare, verb_compare);
@@ -142,9 +146,22 @@ class Program {
   std::vector<std::string> names_;
 };
 
+constexpr const char* no_memory = "sunfleck: not enough memory; 'sunfleck plan' predicts what a scene needs\n";
+
 int out_of_memory() {
-  tell("sunfleck: not enough memory; 'sunfleck plan' predicts what a scene needs\n");
+  tell(no_memory);
   return failed;
+}
+
+/// Memory that a library, the standard one among them, did not get; also the stack of a thread, which comes as a thread that cannot be
+/// started.
+bool is_out_of_memory(const std::exception& error) {
+  if (dynamic_cast<const std::bad_alloc*>(&error) || dynamic_cast<const OutOfMemory*>(&error)) return true;
+  if (dynamic_cast<const Error*>(&error)) return false;  // says itself what it is
+  if (const auto* system = dynamic_cast<const std::system_error*>(&error))
+    return system->code() == std::errc::not_enough_memory || system->code() == std::errc::resource_unavailable_try_again;
+  const std::string text = error.what();
+  return text.find("pthread_create") != std::string::npos || text.find("ut of memory") != std::string::npos;
 }
 
 std::atomic<bool> working{false};
@@ -152,6 +169,19 @@ std::atomic<bool> working{false};
 /// HDF5 (1.10.8) leaves the process by exit(-1) where it cannot have memory: no end for a program without a word.
 void say_why_it_ends() {
   if (working) _exit(out_of_memory());
+}
+
+/// Where memory ends while an exception is on its way, or in a thread of a library, nobody can catch it any more.
+[[noreturn]] void end_at_once() {
+  const char* text = "sunfleck: ended by an error that nobody caught\n";
+  if (const auto error = std::current_exception()) try {
+      std::rethrow_exception(error);
+    } catch (const std::exception& e) {
+      if (is_out_of_memory(e)) text = no_memory;
+    } catch (...) {
+    }
+  [[maybe_unused]] const auto written = ::write(STDERR_FILENO, text, std::strlen(text));  // takes no memory
+  std::_Exit(failed);
 }
 
 int guarded(int argc, char** argv) {
@@ -167,9 +197,11 @@ int guarded(int argc, char** argv) {
   } catch (const Stopped& error) {
     tell(fmt::format("sunfleck: {}\n", error.what()));
     return stopped;
-  } catch (const std::bad_alloc&) {
-    return out_of_memory();
+  } catch (const OutOfMemory& error) {
+    tell(fmt::format("sunfleck: {}; 'sunfleck plan' predicts what a scene needs\n", error.what()));
+    return failed;
   } catch (const std::exception& error) {
+    if (is_out_of_memory(error)) return out_of_memory();
     tell(fmt::format("sunfleck: {}\n", error.what()));
     return failed;
   }
@@ -181,6 +213,7 @@ int run_program(int argc, char** argv) {
   prepare_streams();
   std::atexit(say_why_it_ends);
   working = true;
+  std::set_terminate(end_at_once);
   const int code = guarded(argc, argv);
   working = false;
   if (output_arrived()) return code;

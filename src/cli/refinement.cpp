@@ -14,6 +14,7 @@ namespace {
 
 constexpr double spread_of_curves = 0.15;  // of the error, from one unit of fineness on
 constexpr double spread_of_independence = 0.1;
+constexpr double beyond_chance = 1.64;  // standard errors
 
 /// (x - y)^2 over (x - r)^2 + (y - r)^2, x at draft, y at standard, r the reference: docs/accuracy.md.
 double independence_of(const std::string& method) {
@@ -61,7 +62,7 @@ void Refinement::add(double fineness, const Certificate& certificate, const std:
   if (to_earlier.size() != solves_.size()) throw Error("refinement: a solve is compared with every one before it");
   for (std::size_t j = 0; j < to_earlier.size(); ++j)
     pairs_.push_back({solves_[j].fineness, fineness, to_earlier[j].square, to_earlier[j].square_standard_error});
-  Solve solve{fineness, {}, certificate.square_standard_error};
+  Solve solve{fineness, {}, certificate.square_standard_error, certificate.rmse_low, certificate.rmse_high};
   for (const double e : certificate.rmse) solve.square.push_back(e * e);
   solves_.push_back(std::move(solve));
 }
@@ -93,10 +94,20 @@ Refinement::Found Refinement::by_differences(std::size_t band, double fineness) 
 }
 
 double Refinement::expected(std::size_t band, double fineness, double cautious) const {
+  const Found traced = certified(band, fineness), differences = by_differences(band, fineness);
+  const bool wrong_alike =
+      differences.variance > 0 && traced.square - differences.square > beyond_chance * std::sqrt(traced.variance + differences.variance);
   double weight = 0, sum = 0;
-  for (const auto& [square, variance] : {certified(band, fineness), by_differences(band, fineness)})
-    if (variance > 0) weight += 1.0 / variance, sum += square / variance;
+  for (const auto* kind : {&traced, &differences})
+    if (kind->variance > 0 && !(wrong_alike && kind == &differences)) weight += 1.0 / kind->variance, sum += kind->square / kind->variance;
   return weight > 0 ? std::sqrt(sum / weight + cautious / std::sqrt(weight)) : 0.0;
+}
+
+double Refinement::found(std::size_t band) const {
+  const auto& last = solves_.back();
+  const double estimate = expected(band, last.fineness, 0.0);
+  if (last.low.empty()) return estimate;
+  return std::min(std::max(estimate, last.low[band]), std::max(last.low[band], last.high[band]));
 }
 
 bool Refinement::below(double fineness, double cautious) const {
@@ -114,11 +125,10 @@ bool Refinement::last_says(double fineness, double share, double standard_errors
 }
 
 bool Refinement::contradicted(double fineness) const {
-  constexpr double beyond = 1.64;  // standard errors
-  if (!last_says(fineness, 1.0, beyond)) return true;
+  if (!last_says(fineness, 1.0, beyond_chance)) return true;
   for (std::size_t b = 0; b < goal_.size(); ++b) {
     const auto [square, variance] = by_differences(b, fineness);
-    if (goal_[b] > 0 && square - beyond * std::sqrt(variance) > goal_[b] * goal_[b]) return true;
+    if (goal_[b] > 0 && square - beyond_chance * std::sqrt(variance) > goal_[b] * goal_[b]) return true;
   }
   return false;
 }

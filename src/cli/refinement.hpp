@@ -47,7 +47,11 @@ class Refinement {
   /// brings nothing more, or after `most_solves`.
   std::optional<double> next(double limit) const;
   /// Estimate of band b's rms error at a fineness, `cautious` standard errors added to its square.
+  /// Where the last certificate finds more than the differences by more than 1.64 standard errors of both, the solves have something wrong
+  /// alike, and certificates alone count.
   double expected(std::size_t band, double fineness, double cautious) const;
+  /// What is found of the last solve: expected(), within the interval of its certificate.
+  double found(std::size_t band) const;
 
   const std::vector<double>& goal() const { return goal_; }
   static constexpr std::size_t most_solves = 3;
@@ -64,7 +68,7 @@ class Refinement {
   /// rmse^2 found at a fineness, with its standard error, per band.
   struct Solve {
     double fineness;
-    std::vector<double> square, standard_error;
+    std::vector<double> square, standard_error, low, high;  ///< the last two: rmse, ends of the certificate's interval
   };
   struct Pair {
     double coarse, fine;  ///< fineness

@@ -5,8 +5,9 @@
 #include <string>
 
 #include <fmt/format.h>
-#include <unistd.h>
 
+#include <sunfleck/core/free_memory.hpp>
+#include <sunfleck/core/memory.hpp>
 #include <sunfleck/instantiation/fineness.hpp>
 #include <sunfleck/radiosity/fineness.hpp>
 
@@ -16,7 +17,7 @@ namespace {
 
 constexpr std::uint32_t compared_organs = 4000;
 
-/// The largest fineness whose memory, which grows about as the samples do, stays below three fifths of the machine's.
+/// The largest fineness whose memory, which grows about as the samples do, stays below three fifths of what there is for it.
 double finest_in_memory(const MethodChoice& choice, const SolveReport& report) {
   const auto samples = [&](double fineness) {
     if (choice.method == "instantiation") {
@@ -26,7 +27,7 @@ double finest_in_memory(const MethodChoice& choice, const SolveReport& report) {
     const auto d = density_at(fineness);
     return d.directions * d.lines_per_element * d.elements_per_organ;
   };
-  const double room = 0.6 * static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+  const double room = 0.6 * (static_cast<double>(free_memory().bytes) + static_cast<double>(resident_bytes()));
   double held = 0;
   for (const auto& [name, bytes] : report.memory)
     if (name != "at_once") held += static_cast<double>(bytes);
@@ -66,19 +67,20 @@ bool refine_further(const Scene& scene, const SolveReport& report, Certificate& 
   const auto expected = [&](double at) {
     return percent_of_bands(scene, goal, [&](std::size_t b) { return refinement.expected(b, at, 0.0); });
   };
+  const std::string found = percent_of_bands(scene, goal, [&](std::size_t b) { return refinement.found(b); });
   const std::string wanted = percent_of_bands(scene, goal, [&](std::size_t b) { return goal[b]; });
   if (report.status != SolveStatus::converged || refinement.reached()) {
-    progress.line(fmt::format("error of about {} at fineness {:.2f}; wanted {}", expected(fineness), fineness, wanted));
+    progress.line(fmt::format("error of about {} at fineness {:.2f}; wanted {}", found, fineness, wanted));
     return false;
   }
   const double limit = finest_in_memory(choice, report);
   const auto next = refinement.next(limit);
   if (!next) {
-    progress.line(fmt::format("error of about {} at fineness {:.2f}; wanted {}, not reached", expected(fineness), fineness, wanted));
+    progress.line(fmt::format("error of about {} at fineness {:.2f}; wanted {}, not reached", found, fineness, wanted));
     return false;
   }
   progress.line(fmt::format("error of about {} at fineness {:.2f}; wanted {}: solving again at fineness {:.2f}{}, where {} is expected",
-                            expected(fineness), fineness, wanted, *next,
+                            found, fineness, wanted, *next,
                             *next < limit - 1e-9      ? ""
                             : limit < finest_fineness ? ", the finest that memory allows"
                                                       : ", the finest there is",
@@ -87,16 +89,18 @@ bool refine_further(const Scene& scene, const SolveReport& report, Certificate& 
   return true;
 }
 
-void say_not_reached(const Scene& scene, double fineness, const Refinement& refinement, const Certificate& certificate,
-                     Progress& progress) {
+void say_not_reached(const Scene& scene, const Refinement& refinement, const Certificate& certificate, Progress& progress) {
   const auto& goal = refinement.goal();
-  progress.line(
-      fmt::format("sunfleck: the wanted error, {}, was not reached: about {} is found (certificate {}). The result is written with status "
-                  "'not_converged'. For "
-                  "less: another method, or --method reference with as many --samples as it takes",
-                  percent_of_bands(scene, goal, [&](std::size_t b) { return goal[b]; }),
-                  percent_of_bands(scene, goal, [&](std::size_t b) { return refinement.expected(b, fineness, 0.0); }),
-                  percent_of_bands(scene, goal, [&](std::size_t b) { return certificate.rmse[b]; })));
+  std::string intervals;
+  for (std::size_t b = 0; b < goal.size(); ++b)
+    if (goal[b] > 0)
+      intervals += fmt::format("{}{} {:.2f} to {:.2f} %", intervals.empty() ? "" : ", ", scene.bands[b], 100.0 * certificate.rmse_low[b],
+                               100.0 * certificate.rmse_high[b]);
+  progress.line(fmt::format(
+      "sunfleck: the wanted error, {}, was not reached: about {} is found (95 % interval of the certificate: {}). The result is written "
+      "with status 'not_converged'. For less: another method, or --method reference with as many --samples as it takes",
+      percent_of_bands(scene, goal, [&](std::size_t b) { return goal[b]; }),
+      percent_of_bands(scene, goal, [&](std::size_t b) { return refinement.found(b); }), intervals));
 }
 
 }  // namespace sunfleck

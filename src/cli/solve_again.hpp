@@ -27,6 +27,6 @@ std::vector<std::uint64_t> rows_of(const std::vector<ChosenOrgan>& a, const std:
 bool refine_further(const Scene& scene, const SolveReport& report, Certificate& certificate, const std::vector<SolveDifference>& to_earlier,
                     Refinement& refinement, MethodChoice& choice, Progress& progress);
 
-void say_not_reached(const Scene& scene, double fineness, const Refinement& refinement, const Certificate& certificate, Progress& progress);
+void say_not_reached(const Scene& scene, const Refinement& refinement, const Certificate& certificate, Progress& progress);
 
 }  // namespace sunfleck

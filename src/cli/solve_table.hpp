@@ -2,12 +2,13 @@
 #pragma once
 
 #include <sunfleck/result/certificate.hpp>
+#include <sunfleck/result/plant_shares.hpp>
 #include <sunfleck/scene/scene.hpp>
 #include <sunfleck/scene/solution.hpp>
 
 namespace sunfleck {
 
-/// `certificate` may be null.
-void print_solve_table(const Scene& scene, const SolveReport& report, const Certificate* certificate);
+/// `certificate` and `shares` may be null.
+void print_solve_table(const Scene& scene, const SolveReport& report, const Certificate* certificate, const PlantShares* shares);
 
 }  // namespace sunfleck

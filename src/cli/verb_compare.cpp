@@ -6,6 +6,7 @@
 #include <sunfleck/result/compare.hpp>
 
 #include "cli/json_text.hpp"
+#include "cli/result_status.hpp"
 
 namespace sunfleck {
 
@@ -48,8 +49,10 @@ void print_table(const char* what, const ErrorTable& table, const Result& refere
 
 }  // namespace
 
-int verb_compare(const CompareOptions& options, Progress&) {
+int verb_compare(const CompareOptions& options, Progress& progress) {
   const Result result(options.result), reference(options.reference);
+  say_status(result, progress);
+  say_status(reference, progress);
   const Comparison c = compare(result, reference, !options.ignore_places);
   const auto& bands = reference.bands();
   if (options.json) {

@@ -15,6 +15,7 @@
 
 #include "cli/output_path.hpp"
 #include "cli/result_inputs.hpp"
+#include "cli/result_status.hpp"
 #include "cli/text_units.hpp"
 
 namespace sunfleck {
@@ -53,6 +54,7 @@ int verb_export(const ExportOptions& options, Progress& progress) {
   const Result result(options.result);
   note_inputs_of(result);
   prepare_outputs({options.output}, progress);
+  say_status(result, progress);
   std::string suffix = std::filesystem::path(options.output).extension().string();
   std::transform(suffix.begin(), suffix.end(), suffix.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   if (suffix == ".csv") {

@@ -17,9 +17,11 @@
 #include <sunfleck/plant/describe.hpp>
 #include <sunfleck/result/result_reader.hpp>
 #include <sunfleck/scene/counts.hpp>
+#include <sunfleck/scene/plant_sizes.hpp>
 
 #include "cli/info_result.hpp"
 #include "cli/json_text.hpp"
+#include "cli/sizes_text.hpp"
 #include "cli/text_units.hpp"
 
 namespace sunfleck {
@@ -71,6 +73,7 @@ void species_info(const std::string& file, bool json) {
 void scene_info(const std::string& file, bool json) {
   const Scene scene = read_scene(file);
   const SceneCounts counts = count(scene);
+  const SceneSizes sizes = scene_sizes(scene);
   if (json) {
     Json out{{"file", file},
              {"kind", "scene"},
@@ -83,7 +86,12 @@ void scene_info(const std::string& file, bool json) {
       out["plants"].push_back({{"name", scene.plants[p].name},
                                {"file", scene.plants[p].plant->file},
                                {"facets", scene.plants[p].plant->facet_count()},
-                               {"copies", counts.copies[p]}});
+                               {"copies", counts.copies[p]},
+                               {"height_m", sizes.plants[p].height},
+                               {"width_m", sizes.plants[p].width},
+                               {"lowest_m", sizes.plants[p].lowest}});
+    if (const Box& box = sizes.all; !box.empty())
+      out["bounds_m"] = {{box.low.x, box.low.y, box.low.z}, {box.high.x, box.high.y, box.high.z}};
     if (scene.periodic) out["periodic"] = {scene.periodic->x_low, scene.periodic->y_low, scene.periodic->x_high, scene.periodic->y_high};
     out["notes"] = scene.notes;
     fmt::print("{}\n", json_text(out));
@@ -92,9 +100,13 @@ void scene_info(const std::string& file, bool json) {
   fmt::print("scene      {}\nbands      {}\nstates     {}\n", file, fmt::join(scene.bands, ", "), scene.states.size());
   if (scene.periodic) fmt::print("repeats    every {:g} x {:g} m\n", scene.periodic->width(), scene.periodic->depth());
   for (std::size_t p = 0; p < scene.plants.size(); ++p)
-    fmt::print("{:<11}{}: {} x {} ({})\n", p == 0 ? "plants" : "", scene.plants[p].name,
+    fmt::print("{:<11}{}: {} x {}, {} ({})\n", p == 0 ? "plants" : "", scene.plants[p].name,
                copies_text(counts.copies[p]) + (counts.copies[p] == 1 ? " copy" : " copies"),
-               counted(scene.plants[p].plant->facet_count(), "facet", "facets"), scene.plants[p].plant->file);
+               counted(scene.plants[p].plant->facet_count(), "facet", "facets"),
+               sizes.plants[p].placed ? size_text(sizes.plants[p]) : "not placed", scene.plants[p].plant->file);
+  if (const Box& box = sizes.all; !box.empty())
+    fmt::print("extent     x {:.4g} .. {:.4g}, y {:.4g} .. {:.4g}, z {:.4g} .. {:.4g} m\n", box.low.x, box.high.x, box.low.y, box.high.y,
+               box.low.z, box.high.z);
   fmt::print("facets     {} of plants, {} of the ground\norgans     {}\n", counts.plant_facets, counts.ground_facets, counts.organs);
   for (const auto& note : scene.notes) fmt::print("note       {}\n", note);
 }

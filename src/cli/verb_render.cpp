@@ -14,6 +14,7 @@
 
 #include "cli/output_path.hpp"
 #include "cli/result_inputs.hpp"
+#include "cli/result_status.hpp"
 
 namespace sunfleck {
 
@@ -95,6 +96,7 @@ int verb_render(const RenderOptions& options, Progress& progress) {
   check_output_path(options.output, {".png", ".exr"}, {options.result, options.reference.value_or("")});
   const PictureSettings settings = settings_of(options);
   const Result result(options.result);
+  say_status(result, progress);
   const std::size_t state = state_row(result, options.state);
   const std::size_t band = band_row(result, options.band);
   const std::string quantity = options.quantity.value_or("colour");

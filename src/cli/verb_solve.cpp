@@ -19,11 +19,16 @@
 #include <sunfleck/result/result_writer.hpp>
 #include <sunfleck/result/structure_sums.hpp>
 #include <sunfleck/scene/facets.hpp>
+#include <sunfleck/scene/plant_sizes.hpp>
 #include <sunfleck/view/picture_sink.hpp>
 
+#include "cli/bytes_of_scene.hpp"
 #include "cli/error_goal.hpp"
+#include "cli/memory_need.hpp"
 #include "cli/method_choice.hpp"
 #include "cli/output_path.hpp"
+#include "cli/second_try.hpp"
+#include "cli/sizes_text.hpp"
 #include "cli/solve_again.hpp"
 #include "cli/solve_table.hpp"
 #include "cli/text_units.hpp"
@@ -32,7 +37,7 @@ namespace sunfleck {
 
 namespace {
 
-constexpr int not_converged = 3;  // exit code
+constexpr int not_as_asked = 3;  // exit code: did not converge, is inaccurate, or misses a wanted error
 
 void say_what_was_read(const Scene& scene, const PlacedScene& placed, double seconds, Progress& progress) {
   for (const auto& note : scene.notes) progress.line("note: " + note);
@@ -40,6 +45,7 @@ void say_what_was_read(const Scene& scene, const PlacedScene& placed, double sec
                             counted(placed.first_ground_facet, "facet", "facets"), placed.facets - placed.first_ground_facet,
                             counted(placed.organs, "organ", "organs"), counted(scene.band_count(), "band", "bands"),
                             counted(scene.states.size(), "state", "states"), seconds));
+  progress.line(sizes_text(scene, scene_sizes(scene)));
 }
 
 void say_what_is_dropped(const FacetScene& facets, Progress& progress) {
@@ -90,14 +96,20 @@ bool mostly_copies(const Scene& scene, const PlacedScene& placed) {
   return placed.facets > 2'000'000 && placed.facets / 4 > unique;
 }
 
-/// Where the solver counts what it holds at once, the program itself, as it stood before it read anything, is a part of it.
-void count_program(std::size_t bytes_at_start, SolveReport& report) {
-  for (auto& [name, bytes] : report.memory)
-    if (name == "at_once") {
-      bytes += bytes_at_start;
-      report.memory.insert(report.memory.begin(), {"program", bytes_at_start});
-      return;
-    }
+bool needs_facets(const MethodChoice& choice, const Scene& scene, const PlacedScene& placed) {
+  return choice.method != "instantiation" && !(choice.method == "reference" && (placed.partial || mostly_copies(scene, placed)));
+}
+
+/// Where the solver counts what it holds at once, what the program holds besides is a part of it: itself, as it stood before it read
+/// anything, and what `sunfleck plan` names alike.
+void count_program(const Scene& scene, const SceneCounts& counts, std::size_t bytes_at_start, SolveReport& report) {
+  const bool all_open = scene.solve.only.empty() && scene.solve.stop_at.empty();
+  std::vector<std::pair<std::string, std::uint64_t>> besides{{"program", bytes_at_start}};
+  if (all_open) besides.insert(besides.end(), {{"layout", layout_bytes(counts)}, {"file", row_bytes(scene, counts)}});
+  const auto at_once = std::find_if(report.memory.begin(), report.memory.end(), [](const auto& part) { return part.first == "at_once"; });
+  if (at_once == report.memory.end()) return;
+  for (const auto& [name, bytes] : besides) at_once->second += bytes;
+  report.memory.insert(report.memory.begin(), besides.begin(), besides.end());
 }
 
 bool wants_certificate(const MethodChoice& choice, const Scene& scene, const PlacedScene& placed, const SolveOptions& options) {
@@ -158,21 +170,26 @@ int verb_solve(const SolveOptions& options, Progress& progress) {
   prepare_outputs(outputs, progress);
   if (!options.only.empty()) scene.solve.only = options.only;
   if (options.stop_at) scene.solve.stop_at = stop_from_text(*options.stop_at);
+  std::vector<double> goal;  // wanted errors; empty: none
   std::optional<Refinement> refinement;
+  const auto free = free_memory();
+  const auto counts = count(scene);
+  refuse_layout(scene, counts, free);
   MethodChoice choice = choose_method(options.method, options.error ? "draft" : options.quality, scene, progress);
   if (options.error) {
     check_goal(choice);
-    refinement.emplace(error_goal(wanted, scene.bands), choice.method);
+    goal = error_goal(wanted, scene.bands);
+    refinement.emplace(goal, choice.method);
     choice.fineness = refinement->first();
   }
   const std::uint64_t seed = options.seed.value_or(scene.solve.seed.value_or(1));
   refuse_depth(scene, choice.method);
+  refuse_memory(scene, counts, choice, free, bytes_at_start, options.threads, progress);
   const PlacedScene placed = place(scene);
   const bool sums = stops_inside(scene, placed);  // structures within plants have rows instead of facets
   const PlacedScene layout = sums ? structures_layout(scene, placed) : PlacedScene{};
   std::optional<FacetScene> facets;  // every copy written out, for the methods that need it
-  if (choice.method != "instantiation" && !(choice.method == "reference" && (placed.partial || mostly_copies(scene, placed))))
-    facets = expand(scene);
+  if (needs_facets(choice, scene, placed)) facets = expand(scene);
   const double read_seconds = total.seconds();
   say_what_was_read(scene, placed, read_seconds, progress);
   if (facets) say_what_is_dropped(*facets, progress);
@@ -188,11 +205,17 @@ int verb_solve(const SolveOptions& options, Progress& progress) {
   std::vector<ChosenOrgan> chosen, compared;  // to trace; to compare solves by
   if (!sums && wants_certificate(choice, scene, placed, options)) chosen = choose_organs(rows, checking);
   if (refinement && !chosen.empty()) compared = organs_to_compare(rows, checking);
+  const Aims quality_aims = aims_of(choice, goal, rows, chosen);
+  SecondTry second_try(scene, options.method || scene.solve.method, [&](const MethodChoice& next, std::string& why_not) {
+    return fits_in_memory(scene, next, bytes_at_start, options.threads, why_not, progress);
+  });
 
   std::optional<ResultWriter> writer;
   SolveReport report;
   std::optional<TracedOrgans> traced;  // once: all solves are judged by the same
   std::optional<Certificate> certificate;
+  Aims aims;
+  std::optional<Contradiction> contradicted;
   std::vector<OrganTotals> solved;  // where an error is wanted: of all solves
   std::optional<Image> image;
   double earlier_seconds = 0.0, certificate_seconds = 0.0;
@@ -208,7 +231,7 @@ int verb_solve(const SolveOptions& options, Progress& progress) {
     IrradianceSink& sink = picture ? *picture : rows_sink;
     // other lines for every solve, so that their errors have little in common
     report = run_method(choice, scene, placed, facets, options, seed + solved.size(), sink, progress);
-    count_program(bytes_at_start, report);
+    count_program(scene, counts, bytes_at_start, report);
     if (structures) structures->append(report.structures);
     again = false;
     if (picture) image = picture->draw(progress).image;
@@ -225,7 +248,19 @@ int verb_solve(const SolveOptions& options, Progress& progress) {
     }
     certificate = judge(*traced, writer->totals(), report.balance);
     certificate_seconds += watch.seconds();
-    if (refinement) {
+    aims = refinement ? aims_of(choice, goal, rows, chosen) : quality_aims;
+    contradicted = report.status == SolveStatus::converged ? contradiction(*certificate, aims.error) : std::nullopt;
+    std::optional<MethodChoice> other;
+    if (contradicted) other = second_try.next(choice);
+    if (other) {
+      progress.line(fmt::format("the certificate finds {}: solving again with method {}{}", text_of(*contradicted, aims, scene),
+                                other->method, other->fineness ? fmt::format(" at fineness {:.2f}", *other->fineness) : ""));
+      choice = *other;
+      if (!facets && needs_facets(choice, scene, placed)) facets = expand(scene);
+      if (refinement) refinement.emplace(goal, choice.method);
+      solved.clear();
+      again = true;
+    } else if (refinement) {
       std::vector<SolveDifference> to_earlier;
       for (const auto& earlier : solved) to_earlier.push_back(solve_difference(compared, earlier, writer->totals(), report.balance));
       solved.push_back(writer->totals());
@@ -235,7 +270,10 @@ int verb_solve(const SolveOptions& options, Progress& progress) {
       for (const auto& [phase, spent] : report.timings) earlier_seconds += spent;
   }
   const bool solve_converged = report.status == SolveStatus::converged;
-  if (certificate && refinement && !refinement->reached()) report.status = SolveStatus::not_converged;
+  if (contradicted)
+    report.status = SolveStatus::inaccurate;
+  else if (certificate && refinement && !refinement->reached())
+    report.status = SolveStatus::not_converged;
   report.timings.emplace(report.timings.begin(), "read", read_seconds);
   if (earlier_seconds > 0) add_seconds(report.timings, "earlier, coarser solves", earlier_seconds);
   if (certificate) add_seconds(report.timings, "certificate", certificate_seconds);
@@ -246,16 +284,18 @@ int verb_solve(const SolveOptions& options, Progress& progress) {
 
   if (image) write_png(*image, *options.picture);  // before the table, which a closed pipe may end
 
-  print_solve_table(scene, report, certificate ? &*certificate : nullptr);
+  print_solve_table(scene, report, certificate ? &*certificate : nullptr, sums ? nullptr : &writer->plant_shares());
   say_timings(report, placed.facets, total.seconds(), progress);
   progress.line("wrote " + options.result);
   if (image) progress.line("wrote " + *options.picture);
   if (report.status == SolveStatus::converged) return 0;
-  if (solve_converged)
-    say_not_reached(scene, *choice.fineness, *refinement, *certificate, progress);
+  if (contradicted)
+    say_inaccurate(*contradicted, aims, scene, second_try.advice(), progress);
+  else if (solve_converged)
+    say_not_reached(scene, *refinement, *certificate, progress);
   else
     say_not_converged(scene, report, progress);
-  return not_converged;
+  return not_as_asked;
 }
 
 }  // namespace sunfleck

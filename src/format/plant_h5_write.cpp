@@ -41,7 +41,7 @@ class PlantPacker {
 
  private:
   static void check(herr_t status) {
-    if (status < 0) throw OutputError("a plant could not be packed as HDF5 (out of memory?)");
+    if (status < 0) throw OutOfMemory("HDF5, which could not pack a plant");
   }
 
   void write_raw(const std::string& path, hid_t type, const void* data, const std::vector<hsize_t>& size, hsize_t bytes_per_row) {
@@ -199,7 +199,7 @@ void write_plant_h5(const Plant& plant, const std::string& file) {
   out.write(image);
   out.flush();
   if (h5::failed_closes != closes_failed_before || !h5::is_whole(out.temporary()))
-    throw OutputError(file + ": cannot be written: HDF5 has lost a part of it (out of memory?), which was noticed when it was read again");
+    throw OutOfMemory("HDF5, which has lost a part of " + file + ", as was noticed when it was read again");
   out.commit();
 }
 

@@ -8,6 +8,7 @@
 
 #include <sunfleck/core/error.hpp>
 #include <sunfleck/core/input_file.hpp>
+#include <sunfleck/scene/plant_sizes.hpp>
 
 #include <format/scene_toml_parts.hpp>
 
@@ -118,6 +119,7 @@ Scene read_scene(const std::string& file) {
   read_lamps(root, scene);
   read_sensors(root, scene);
   check_scene(scene);
+  for (auto& note : notes_on_sizes(scene, scene_sizes(scene))) scene.notes.push_back(std::move(note));
   return scene;
 }
 

@@ -65,7 +65,8 @@ Mesh read_flat_mesh(const std::string& file, double unit_m, std::vector<std::str
 
 TomlSchema optics_schema(const TomlSchema& per_band) {
   return TomlSchema::of(
-      {}, {{"reflectance", per_band}, {"reflectance_front", per_band}, {"reflectance_back", per_band}, {"transmittance", per_band}});
+      {"counts_as"},
+      {{"reflectance", per_band}, {"reflectance_front", per_band}, {"reflectance_back", per_band}, {"transmittance", per_band}});
 }
 
 TomlSchema ground_schema(const TomlSchema& per_band) {
@@ -105,6 +106,11 @@ void read_optics(const TomlValue& root, Scene& scene) {
                          fmt::format("reflectance {} + transmittance {} = {:.6g}", (*rho)[b], optics.transmittance[b], sum),
                          "a sum of at most 1");
       }
+    if (const auto counts_as = table.get("counts_as")) {
+      const auto what = counts_as->text();
+      if (what != "leaf" && what != "other") counts_as->fail("\"" + what + "\"", "\"leaf\" or \"other\"");
+      optics.counts_as_leaf = what == "leaf";
+    }
     scene.optics.push_back(std::move(optics));
   }
 }

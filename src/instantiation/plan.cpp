@@ -71,15 +71,6 @@ double sun_meetings(const OriginalLight& original, const Similarity& map, const 
   return sum;
 }
 
-bool scatters(const Scene& scene) {
-  const auto any = [](const Optics& o) {
-    for (const auto* list : {&o.reflectance_front, &o.reflectance_back, &o.transmittance})
-      if (std::any_of(list->begin(), list->end(), [](float v) { return v > 0.0f; })) return true;
-    return false;
-  };
-  return std::any_of(scene.optics.begin(), scene.optics.end(), any) || (scene.ground && any(scene.ground->optics));
-}
-
 /// Goes through a solve step by step, with sizes in place of the things themselves.
 class Planner {
  public:

@@ -9,9 +9,7 @@
 namespace sunfleck {
 
 bool anything_scatters(const FacetScene& facets) {
-  const auto bright = [](const std::vector<float>& v) { return std::any_of(v.begin(), v.end(), [](float x) { return x > 0.0f; }); };
-  return std::any_of(facets.materials.begin(), facets.materials.end(),
-                     [&](const Optics& m) { return bright(m.reflectance_front) || bright(m.reflectance_back) || bright(m.transmittance); });
+  return std::any_of(facets.materials.begin(), facets.materials.end(), [](const Optics& m) { return scatters(m); });
 }
 
 Reflection::Reflection(const FacetScene& facets, std::vector<std::uint32_t> material_of_part, std::size_t states)

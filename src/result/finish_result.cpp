@@ -10,24 +10,36 @@ namespace sunfleck::h5 {
 
 namespace {
 
-void write_balance(OutputFile& file, ArrayWriter& arrays, const SolveReport& report, std::size_t states, std::size_t bands,
+void write_balance(OutputFile& file, ArrayWriter& arrays, const SolveReport& report, const PlantShares& shares,
                    const HeightProfile& profile, const std::string& power) {
-  constexpr std::size_t n = 9;
+  const std::size_t states = shares.states, bands = shares.bands;
+  constexpr std::size_t n = 10;
   std::vector<double> columns[n];
   const char* names[n] = {
-      "incident", "leaves",         "ground", "escaped", "residual", "absorbed_fraction_leaves", "absorbed_fraction_ground",
-      "albedo",   "scattered_scale"};
+      "incident", "leaves",          "ground", "escaped", "residual", "absorbed_fraction_leaves", "absorbed_fraction_ground",
+      "albedo",   "scattered_scale", "other"};
   for (std::size_t s = 0; s < states; ++s)
     for (std::size_t b = 0; b < bands; ++b) {
       const Balance balance = report.balance.empty() ? Balance{} : report.balance.at(s).at(b);
       const double part = balance.incident > 0 ? 1.0 / balance.incident : 0.0;
-      const double values[n] = {balance.incident,      balance.leaves,         balance.ground,
-                                balance.escaped,       balance.residual(),     balance.leaves * part,
-                                balance.ground * part, balance.escaped * part, balance.scattered_scale};
+      const double other = shares.other_of_all(s, b);
+      const double values[n] = {balance.incident,        balance.leaves,
+                                balance.ground,          balance.escaped,
+                                balance.residual(),      (balance.leaves - other) * part,
+                                balance.ground * part,   balance.escaped * part,
+                                balance.scattered_scale, other};
       for (std::size_t i = 0; i < n; ++i) columns[i].push_back(values[i]);
     }
   const Id group = make_group(file, file.id(), "balance");
-  for (std::size_t i = 0; i < n; ++i) arrays.write(group.get(), names[i], columns[i].data(), {states, bands}, i < 5 ? power : "1");
+  for (std::size_t i = 0; i < n; ++i)
+    arrays.write(group.get(), names[i], columns[i].data(), {states, bands}, i < 5 || i == 9 ? power : "1");
+  if (!shares.names.empty()) {
+    const Id plants = make_group(file, group.get(), "plants");
+    arrays.write_strings(plants.get(), "name", shares.names);
+    arrays.write_states(plants.get(), "leaf", shares.leaf.data(), {states, shares.names.size(), bands}, power);
+    arrays.write_states(plants.get(), "other", shares.other.data(), {states, shares.names.size(), bands}, power);
+    arrays.flush();
+  }
   const Id layers = make_group(file, group.get(), "profile");
   arrays.write(layers.get(), "height", profile.height, "m");
   arrays.write(layers.get(), "area", profile.area, "m^2");
@@ -76,14 +88,14 @@ void write_pairs(OutputFile& file, ArrayWriter& arrays, hid_t group, const std::
 
 }  // namespace
 
-void write_report(OutputFile& file, ArrayWriter& arrays, const SolveReport& report, const Certificate* certificate, std::size_t states,
-                  std::size_t bands, const HeightProfile& profile, const std::string& power) {
-  write_attribute(file, file.id(), "status", report.status == SolveStatus::converged ? "converged" : "not_converged");
+void write_report(OutputFile& file, ArrayWriter& arrays, const SolveReport& report, const Certificate* certificate,
+                  const PlantShares& shares, const HeightProfile& profile, const std::string& power) {
+  write_attribute(file, file.id(), "status", name_of(report.status));
   if (!report.stand_in_rmse.empty()) {
     write_attribute(file, file.id(), "stand_in_rmse", report.stand_in_rmse);
     write_attribute(file, file.id(), "stand_in_bias", report.stand_in_bias);
   }
-  write_balance(file, arrays, report, states, bands, profile, power);
+  write_balance(file, arrays, report, shares, profile, power);
 
   std::vector<std::uint32_t> level, iteration;
   std::vector<double> residual, seconds;
@@ -111,7 +123,7 @@ void write_report(OutputFile& file, ArrayWriter& arrays, const SolveReport& repo
   write_pairs(file, arrays, counts.get(), report.counts, "value", "1");
   write_pairs(file, arrays, memory.get(), report.memory, "bytes", "byte");
   write_attribute(file, memory.get(), "peak_resident_bytes", peak_resident_bytes());
-  if (certificate) write_certificate(file, arrays, *certificate, states, bands, power);
+  if (certificate) write_certificate(file, arrays, *certificate, shares.states, shares.bands, power);
 }
 
 void write_structures(OutputFile& file, ArrayWriter& arrays, const SolveReport& report, const Scene& scene, const PlacedScene& placed) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <sunfleck/result/certificate.hpp>
+#include <sunfleck/result/plant_shares.hpp>
 #include <sunfleck/scene/placed_scene.hpp>
 #include <sunfleck/scene/solution.hpp>
 
@@ -11,8 +12,8 @@
 namespace sunfleck::h5 {
 
 /// /balance, /convergence, /counts, /certificate, /timings, /memory and the status.
-void write_report(OutputFile& file, ArrayWriter& arrays, const SolveReport& report, const Certificate* certificate, std::size_t states,
-                  std::size_t bands, const HeightProfile& profile, const std::string& power_unit);
+void write_report(OutputFile& file, ArrayWriter& arrays, const SolveReport& report, const Certificate* certificate,
+                  const PlantShares& shares, const HeightProfile& profile, const std::string& power_unit);
 
 /// /structures: what PlacedScene::closed absorbs. Nothing if there is none.
 void write_structures(OutputFile& file, ArrayWriter& arrays, const SolveReport& report, const Scene& scene, const PlacedScene& placed);

@@ -28,7 +28,7 @@ OutputFile::~OutputFile() {
 
 void OutputFile::check(bool good) const {
   if (state_.error != 0) replaced_.fail(state_.error);
-  if (!good) throw OutputError(path() + ": cannot be written: HDF5 refused to store a dataset");
+  if (!good) throw OutOfMemory("HDF5, which refused to store a dataset of " + path());  // the disk did not, and nothing else is left
 }
 
 void OutputFile::commit() {
@@ -48,8 +48,7 @@ void OutputFile::complete() {
   file_.close();
   check(failed_closes == closes_failed_before_);
   if (!is_whole(replaced_.temporary()))
-    throw OutputError(path() +
-                      ": cannot be written: HDF5 has lost a part of it (out of memory?), which was noticed when it was read again");
+    throw OutOfMemory("HDF5, which has lost a part of " + path() + ", as was noticed when it was read again");
 }
 
 }  // namespace sunfleck::h5

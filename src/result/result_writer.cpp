@@ -56,6 +56,10 @@ class ResultWriter::Impl {
         absorptance_.push_back(1.0 - double{m.reflectance_front[b]} - double{m.transmittance[b]});
         absorptance_.push_back(1.0 - double{m.reflectance_back[b]} - double{m.transmittance[b]});
       }
+    for (const auto& m : rows_.materials()) is_leaf_.push_back(m.counts_as_leaf);
+    std::vector<std::string> plants;
+    for (const auto& entry : scene.plants) plants.push_back(entry.name);
+    shares_ = PlantShares(states_, bands_, std::move(plants));
     for (auto& a : absorptance_) a = std::max(a, 0.0);  // rho + tau = 1 in float may exceed 1 by a rounding
 
     h5::write_attribute(file_, file_.id(), "format", "sunfleck-result");
@@ -103,6 +107,7 @@ class ResultWriter::Impl {
   }
 
   const OrganTotals& totals() const { return organs_->totals; }
+  const PlantShares& shares() const { return shares_; }
 
   void finish(const SolveReport& report, const Certificate* certificate) {
     const h5::Quiet quiet;
@@ -118,7 +123,7 @@ class ResultWriter::Impl {
 
     h5::ArrayWriter arrays(file_, queue_);
     h5::write_structures(file_, arrays, report, rows_.scene(), rows_.placed());
-    h5::write_report(file_, arrays, report, certificate, states_, bands_, profile_, h5::power_unit(rows_.scene()));
+    h5::write_report(file_, arrays, report, certificate, shares_, profile_, h5::power_unit(rows_.scene()));
     h5::write_sensors(file_, arrays, rows_.scene(), report.sensors);
     facets_group_.close();
     variance_group_.close();
@@ -188,10 +193,12 @@ class ResultWriter::Impl {
     const float* sunlit = r.sunlit ? r.sunlit + (s * r.count + at) * 2 : nullptr;
     const float* variance = r.variance_of_absorbed ? r.variance_of_absorbed + (s * r.count + at) * bands_ : nullptr;
     const bool plant = !rows_.is_ground(copy_);
+    const std::size_t share = plant ? shares_.at(s, rows_.placed().copies[copy_].plant, 0) : 0;
     floats_.resize(count * bands_);
     for (std::size_t i = 0; i < count; ++i) {
       const Facet& facet = facets_[i];
       const double area = facet.area;
+      double* of_plant = plant ? &(is_leaf_[facet.material] ? shares_.leaf : shares_.other)[share] : nullptr;
       for (std::size_t b = 0; b < bands_; ++b) {
         const double front = irradiance[(i * 2) * bands_ + b], back = irradiance[(i * 2 + 1) * bands_ + b];
         if (!std::isfinite(front) || !std::isfinite(back))
@@ -202,6 +209,7 @@ class ResultWriter::Impl {
         organs_->add_irradiance(s, facet.organ, 0, b, area * front);
         organs_->add_irradiance(s, facet.organ, 1, b, area * back);
         organs_->add_absorbed(s, facet.organ, b, area * double{absorbed});
+        if (of_plant) of_plant[b] += area * double{absorbed};
         if (plant) profile_.add_absorbed(s, facet.layer, b, area * double{absorbed});
         if (variance) organs_->add_variance(s, facet.organ, b, area * area * double{variance[i * bands_ + b]});
       }
@@ -215,7 +223,8 @@ class ResultWriter::Impl {
       if (variance_.empty()) {
         variance_group_ = h5::open_or_make_group(file_, file_.id(), "variance");
         variance_.emplace_back(file_, queue_, variance_group_.get(), "facets", H5T_NATIVE_FLOAT,
-                               RowDataset::Shape{states_, rows_.placed().facets, {bands_}}, h5::squared(h5::irradiance_unit(rows_.scene())));
+                               RowDataset::Shape{states_, rows_.placed().facets, {bands_}},
+                               h5::squared(h5::irradiance_unit(rows_.scene())));
       }
       variance_.front().append(s, variance, count);
     }
@@ -243,6 +252,8 @@ class ResultWriter::Impl {
   std::vector<RowDataset> irradiance_, absorbed_, sunlit_, variance_, area_, organ_, centroid_;  ///< none or one each
   std::optional<h5::OrganRows> organs_;
   HeightProfile profile_;
+  PlantShares shares_;
+  std::vector<bool> is_leaf_;        ///< [material]
   std::vector<double> absorptance_;  ///< [material][b][front, back]
   bool wide_organs_ = false;
   std::uint64_t next_facet_ = 0;
@@ -267,6 +278,9 @@ void ResultWriter::keep_totals(std::vector<std::uint64_t> organs) {
 }
 const OrganTotals& ResultWriter::totals() const {
   return impl_->totals();
+}
+const PlantShares& ResultWriter::plant_shares() const {
+  return impl_->shares();
 }
 void ResultWriter::finish(const SolveReport& report, const Certificate* certificate) {
   impl_->finish(report, certificate);

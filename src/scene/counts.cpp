@@ -83,11 +83,13 @@ SceneCounts count(const Scene& scene) {
     const std::uint64_t facets = plant.facet_count();
     counts.plant_facets += counts.copies[p] * facets;
     counts.organs += counts.copies[p] * organs.size();
+    counts.largest_plant_organs = std::max<std::uint64_t>(counts.largest_plant_organs, organs.size());
     counts.leaf_area += static_cast<double>(counts.copies[p]) * plant.area();
     if (seen.insert(&plant).second) counts.unique_facets += facets;
   }
   counts.ground_facets = ground_facets(scene);
-  counts.organs += ground_organs(scene);
+  counts.ground_organs = ground_organs(scene);
+  counts.organs += counts.ground_organs;
   return counts;
 }
 

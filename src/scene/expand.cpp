@@ -34,8 +34,7 @@ void reserve(const Scene& scene, FacetScene& out) {
     out.copies.reserve(copies);
     out.copy_plant.reserve(copies);
   } catch (const std::bad_alloc&) {
-    throw InputError(location(scene.file), std::to_string(facets) + " facets, for which there is not enough memory",
-                     "fewer copies, or smaller plants");
+    throw OutOfMemory(std::to_string(facets) + " facets of all copies and the ground; fewer copies or ground cells, or smaller plants");
   }
 }
 

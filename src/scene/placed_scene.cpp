@@ -77,8 +77,7 @@ class Placing {
   using Match = PathPatterns::Match;
 
   [[noreturn]] void throw_too_many(std::uint64_t all) const {
-    throw InputError(location(scene_.file), copies_text(all) + " copies of plants, for which there is not enough memory",
-                     "fewer copies, or `only` in [solve] for some of them");
+    throw OutOfMemory(copies_text(all) + " copies of plants; fewer copies, or `only` in [solve] for some of them");
   }
 
   std::string path() const {

@@ -85,6 +85,8 @@ std::size_t state_row(const Result& result, const std::optional<std::string>& st
   const auto [end, error] = std::from_chars(state->data(), state->data() + state->size(), number);
   const bool is_number = error == std::errc{} && end == state->data() + state->size() && number >= 1 && number <= names.size();
   if (is_number && std::find(names.begin(), names.end(), *state) == names.end()) return number - 1;
+  for (std::size_t i = 0; i < names.size(); ++i)
+    if (names[i].empty()) names[i] = std::to_string(i + 1);  // states without names go by their numbers
   return row_of("state", result.file(), *state, names);
 }
 

@@ -10,7 +10,11 @@
 namespace sunfleck {
 
 EmbreeDevice::EmbreeDevice(Trees trees) : trees_(trees), device_(rtcNewDevice(nullptr)) {
-  if (!device_) throw Error(fmt::format("Embree could not be started (error {})", static_cast<int>(rtcGetDeviceError(nullptr))));
+  if (!device_) {
+    const auto error = rtcGetDeviceError(nullptr);
+    if (error == RTC_ERROR_OUT_OF_MEMORY) throw OutOfMemory("Embree, which follows rays");
+    throw Error(fmt::format("Embree could not be started (error {})", static_cast<int>(error)));
+  }
   const auto count = [](void* held, ssize_t bytes, bool) {
     *static_cast<std::atomic<std::int64_t>*>(held) += bytes;
     return true;
@@ -34,7 +38,7 @@ void EmbreeDevice::commit(RTCScene scene) const {
 
 void EmbreeDevice::check(const std::string& what) const {
   const auto error = rtcGetDeviceError(device_.get());
-  if (error == RTC_ERROR_OUT_OF_MEMORY) throw Error("not enough memory for the rays' tree over " + what);
+  if (error == RTC_ERROR_OUT_OF_MEMORY) throw OutOfMemory("the rays' tree over " + what);
   if (error != RTC_ERROR_NONE)
     throw Error(fmt::format("Embree could not build its tree over {} (error {})", what, static_cast<int>(error)));
 }
@@ -49,7 +53,7 @@ EmbreeTriangles::EmbreeTriangles(const EmbreeDevice& device, std::size_t count)
           rtcSetNewGeometryBuffer(geometry_.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), 3 * count))),
       indices_(static_cast<unsigned*>(
           rtcSetNewGeometryBuffer(geometry_.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned), count))) {
-  if (!vertices_ || !indices_) throw Error(fmt::format("not enough memory for the rays' geometry of {} facets", count));
+  if (!vertices_ || !indices_) throw OutOfMemory(fmt::format("the rays' geometry of {} facets", count));
 }
 
 void EmbreeTriangles::attach(RTCScene scene, unsigned id, RTCBuildQuality quality) {
@@ -80,7 +84,7 @@ void EmbreeMesh::attach(const EmbreeDevice& device, RTCScene scene, unsigned id)
       rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), vertices_.size() / 3);
   auto* indices =
       rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned), indices_.size() / 3);
-  if (!vertices || !indices) throw Error(fmt::format("not enough memory for the rays' geometry of {} facets", indices_.size() / 3));
+  if (!vertices || !indices) throw OutOfMemory(fmt::format("the rays' geometry of {} facets", indices_.size() / 3));
   std::copy(vertices_.begin(), vertices_.end(), static_cast<float*>(vertices));
   std::copy(indices_.begin(), indices_.end(), static_cast<unsigned*>(indices));
   vertices_ = {};

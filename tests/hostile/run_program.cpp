@@ -65,6 +65,10 @@ ProgramRun run_sunfleck(const std::vector<std::string>& arguments, const Program
     std::signal(SIGPIPE, SIG_DFL);  // whatever the runner of the tests has made of it
     if (fate.seconds > 0) alarm(fate.seconds);
     for (const auto& variable : fate.environment) putenv(const_cast<char*>(variable.c_str()));
+    if (fate.memory_bytes > 0) {
+      const rlimit limit{fate.memory_bytes, fate.memory_bytes};
+      setrlimit(RLIMIT_AS, &limit);
+    }
     execv(SUNFLECK_PROGRAM, argv.data());
     _exit(127);
   }

@@ -155,3 +155,18 @@ TEST_CASE("a solve has to be compared with every one before it", "[cli][error]")
   r.add(r.first(), certificate({0.05}, 0.2), {});
   CHECK_THROWS_WITH(r.add(1.0, certificate({0.02}, 0.2), {}), "refinement: a solve is compared with every one before it");
 }
+
+TEST_CASE("what is said to be found lies within the certificate's interval, whatever two solves have wrong alike", "[cli][error]") {
+  Refinement r({0.01}, "instantiation");
+  Certificate coarse = certificate({0.075}, 0.05);
+  coarse.rmse_low = {0.070}, coarse.rmse_high = {0.080};
+  r.add(0.0, coarse, {});
+  CHECK(r.found(0) == Approx(0.075));
+  Certificate fine = certificate({0.0754}, 0.05);
+  fine.rmse_low = {0.071}, fine.rmse_high = {0.081};
+  r.add(1.0, fine, {apart({0.003}, {0.0015}, 0.05)});  // they agree with each other, not with the truth
+  CHECK(r.found(0) >= 0.071);
+  CHECK(r.found(0) <= 0.081);
+  CHECK(r.expected(0, 1.0, 0.0) > 0.05);
+  CHECK_FALSE(r.reached());
+}

@@ -65,6 +65,7 @@ TracedOrgans trace_organs(const Scene& scene, const FacetRows& rows, const RaySc
 /// per area; w area; the Error definition of docs/formats-result.md):
 ///   rmse^2 = max(0, sum w ((x - r)^2 - var r) / sum w), bias = sum w (x - r) / sum w, over the mean of r,
 /// where the mean of r is the mean of x over *all* organs of plants less the bias, which is far less noisy than that of the checked ones.
+/// It is taken to be at least a thousandth of the mean of x: where paths find no light and the solve some, the error is large.
 /// The interval and the bias's standard error hold both the choice of organs and the noise of the paths (see error_interval.hpp).
 /// Where plants absorb less than 1e-6 of the incident light, irradiance (front + back) takes the place of absorbed in the measures.
 /// A scene without plant organs yields measures of zero and no organs.

@@ -32,6 +32,13 @@ class OutputError : public Error {
   using Error::Error;
 };
 
+/// Memory that is not there, or would not be: what() reads "not enough memory for WHAT". The program says the same, with the same exit code
+/// 1, where a library finds none (cli/program.cpp).
+class OutOfMemory : public Error {
+ public:
+  explicit OutOfMemory(const std::string& what) : Error("not enough memory for " + what) {}
+};
+
 /// The user asked to stop (a signal, or Progress::cancelled). Exit code 4.
 class Stopped : public Error {
  public:

@@ -1,6 +1,7 @@
 // Optical properties of two-sided, bi-Lambertian facets.
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,15 @@ namespace sunfleck {
 struct Optics {
   std::string name;
   std::vector<float> reflectance_front, reflectance_back, transmittance;  ///< one value per band
+  bool counts_as_leaf = true;  ///< in the absorbed fraction of leaves (fAPAR); light does not ask
 };
+
+/// Does it send on any light in any band?
+inline bool scatters(const Optics& optics) {
+  const auto bright = [](const std::vector<float>& values) {
+    return std::any_of(values.begin(), values.end(), [](float v) { return v > 0.0f; });
+  };
+  return bright(optics.reflectance_front) || bright(optics.reflectance_back) || bright(optics.transmittance);
+}
 
 }  // namespace sunfleck

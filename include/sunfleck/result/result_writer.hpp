@@ -8,6 +8,7 @@
 
 #include <sunfleck/result/certificate.hpp>
 #include <sunfleck/result/organ_totals.hpp>
+#include <sunfleck/result/plant_shares.hpp>
 #include <sunfleck/scene/placed_scene.hpp>
 #include <sunfleck/scene/solution.hpp>
 
@@ -36,6 +37,9 @@ class ResultWriter final : public IrradianceSink {
   void keep_totals(std::vector<std::uint64_t> organs);
   /// Sums of the copies of plants and of the ground whose last row has been received.
   const OrganTotals& totals() const;
+
+  /// What the plants absorb, by rows received.
+  const PlantShares& plant_shares() const;
 
   /// Completes the file and gives it its name. Throws Error if rows are missing. `certificate` may be null.
   void finish(const SolveReport& report, const Certificate* certificate = nullptr);

@@ -25,8 +25,10 @@ struct SceneCounts {
   std::uint64_t plant_facets = 0;     ///< of all copies
   std::uint64_t unique_facets = 0;    ///< of plants that are placed at least once, each counted once
   std::uint64_t ground_facets = 0;
-  std::uint64_t organs = 0;  ///< structures with shapes in all copies, and the rows that the ground has
-  double leaf_area = 0;      ///< one-sided area of all plant facets, without the scales of placements [m^2]
+  std::uint64_t organs = 0;                ///< structures with shapes in all copies, and the rows that the ground has
+  std::uint64_t ground_organs = 0;         ///< the latter
+  std::uint64_t largest_plant_organs = 0;  ///< of one copy
+  double leaf_area = 0;                    ///< one-sided area of all plant facets, without the scales of placements [m^2]
   std::uint64_t facets() const { return plant_facets + ground_facets; }
 };
 

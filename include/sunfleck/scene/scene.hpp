@@ -1,6 +1,7 @@
 // A scene as its user describes it: bands, light, optics, ground, plants and how they are placed.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <map>
@@ -99,6 +100,12 @@ struct Scene {
 
   std::size_t band_count() const { return bands.size(); }
 };
+
+/// Does any surface, of plants or the ground, send on any light?
+inline bool scatters(const Scene& scene) {
+  return std::any_of(scene.optics.begin(), scene.optics.end(), [](const Optics& o) { return scatters(o); }) ||
+         (scene.ground && scatters(scene.ground->optics));
+}
 
 /// Physics at the door, for scenes read or built in memory: at least one band and state, finite and non-negative irradiances,
 /// rho + tau <= 1, finite vertices, no cycle among groups, ground that fills a periodic cell. Throws InputError.

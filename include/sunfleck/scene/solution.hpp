@@ -57,7 +57,13 @@ struct IterationRow {
   double seconds = 0;
 };
 
-enum class SolveStatus { converged, not_converged };
+enum class SolveStatus {
+  converged,
+  not_converged,  ///< the iteration ended early, or an error that was asked for was not reached
+  inaccurate      ///< the result's own certificate contradicts it (audit/verdict.hpp)
+};
+/// As the result file has it.
+std::string name_of(SolveStatus status);
 
 /// What a method did.
 struct SolveReport {
