@@ -7,11 +7,13 @@
 struct ProgramRun {
   int exit_code = -1;  ///< 128 + signal if it was killed
   std::string out, err;
+  double seconds_to_stop = 0;  ///< from the signal of ProgramFate to the end
 };
 
 /// What happens to the program while it runs.
 struct ProgramFate {
   std::string stop_at;         ///< not empty: sends it `signal` once standard error holds this text
+  double stop_after_s = 0;     ///< > 0: sends it `signal` after so many seconds
   int signal = 15;             ///< SIGTERM
   std::size_t disk_bytes = 0;  ///< > 0: no file may grow beyond this, as on a full disk
   bool no_threads = false;     ///< each thread that it wants is refused, as where the system has no more

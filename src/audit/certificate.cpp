@@ -36,12 +36,14 @@ std::vector<SampleTarget> targets_of(const FacetRows& rows, const RayScene& rays
   return targets;
 }
 
-TracedLight measure(const PathSampler& sampler, const SampleTarget& target, std::uint32_t count) {
+/// Nothing where the user wants to stop.
+TracedLight measure(const PathSampler& sampler, const SampleTarget& target, std::uint32_t count, const Progress& progress) {
   constexpr double n = reference_randomisations;
   const std::size_t bands = sampler.bands(), size = sampler.states() * bands;
   std::vector<SampleMeans> parts(reference_randomisations);
   TracedLight out;
   for (std::uint32_t r = 0; r < reference_randomisations; ++r) {
+    if (progress.cancelled()) return {};
     sampler.sample(target, r, count, sun_points, parts[r]);
     out.rays += parts[r].rays;
   }
@@ -116,7 +118,7 @@ TracedOrgans trace_organs(const Scene& scene, const FacetRows& rows, const RaySc
   std::vector<std::uint64_t> cost(pilots);
   arena.execute([&] {
     tbb::parallel_for(std::size_t{0}, pilots,
-                      [&](std::size_t p) { cost[p] = measure(sampler, targets[p * targets.size() / pilots], 1).rays; });
+                      [&](std::size_t p) { cost[p] = measure(sampler, targets[p * targets.size() / pilots], 1, progress).rays; });
   });
   std::uint64_t pilot_rays = 0;
   for (const auto c : cost) pilot_rays += c;
@@ -135,8 +137,10 @@ TracedOrgans trace_organs(const Scene& scene, const FacetRows& rows, const RaySc
     progress.check();
     progress.fraction("certificate", static_cast<double>(first) / static_cast<double>(chosen.size()));
     const std::size_t last = std::min(first + block, chosen.size());
-    arena.execute([&] { tbb::parallel_for(first, last, [&](std::size_t k) { measured[k] = measure(sampler, targets[k], count); }); });
+    arena.execute(
+        [&] { tbb::parallel_for(first, last, [&](std::size_t k) { measured[k] = measure(sampler, targets[k], count, progress); }); });
   }
+  progress.check();
   progress.fraction("certificate", 1.0);
   for (const auto& m : measured) out.rays += m.rays;
   return out;

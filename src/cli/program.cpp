@@ -106,7 +106,10 @@ class Program {
     }
     TerminalProgress progress;
     for (const auto& [verb, work] : work_)
-      if (verb->parsed()) return work(progress);
+      if (verb->parsed()) {
+        if (verb->get_name() != "view") progress.end_when_overdue();  // to be stopped is how a viewer ends: it says goodbye by itself
+        return work(progress);
+      }
     return bad_input;
   }
 

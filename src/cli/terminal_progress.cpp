@@ -12,6 +12,7 @@
 
 #include <fmt/format.h>
 
+#include "cli/overdue_stop.hpp"
 #include "cli/standard_streams.hpp"
 
 namespace sunfleck {
@@ -24,6 +25,7 @@ static_assert(std::atomic<bool>::is_always_lock_free);
 
 extern "C" void ask_to_stop(int) {
   stop_asked.store(true, std::memory_order_relaxed);
+  OverdueStop::asked();
 }
 
 void on_signal(int signal) {
@@ -84,6 +86,11 @@ std::string time_left(double seconds, double done) {
   const long minutes = std::lround(left / 60);
   if (minutes < 100) return fmt::format("{} min left", minutes);
   return fmt::format("{} h {:02} min left", minutes / 60, minutes % 60);
+}
+
+void TerminalProgress::end_when_overdue() {
+  constexpr std::chrono::milliseconds patience{300};
+  overdue_ = std::make_unique<OverdueStop>(patience);
 }
 
 bool TerminalProgress::cancelled() const {

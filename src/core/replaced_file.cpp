@@ -12,6 +12,7 @@
 #include <unistd.h>
 
 #include <sunfleck/core/error.hpp>
+#include <sunfleck/core/unfinished_files.hpp>
 
 #include "core/partial_name.hpp"
 
@@ -87,7 +88,10 @@ void ReplacedFile::open_temporary() {
     if (descriptor_ < 0) fail(errno);
     ::flock(descriptor_, LOCK_SH | LOCK_NB);  // shared, so that HDF5, which locks what it reads, may read it
     struct stat status {};
-    if (::fstat(descriptor_, &status) == 0 && status.st_nlink > 0) return;
+    if (::fstat(descriptor_, &status) == 0 && status.st_nlink > 0) {
+      UnfinishedFiles::all().add(temporary_);
+      return;
+    }
     ::close(std::exchange(descriptor_, -1));  // someone who tidies up has taken it for abandoned just before it was locked
   }
   fail(EEXIST);
@@ -95,8 +99,9 @@ void ReplacedFile::open_temporary() {
 
 ReplacedFile::~ReplacedFile() {
   if (old_descriptor_ >= 0) ::close(old_descriptor_);
+  if (descriptor_ >= 0 && !committed_) ::unlink(temporary_.c_str());
+  UnfinishedFiles::all().forget(temporary_);
   if (descriptor_ < 0) return;
-  if (!committed_) ::unlink(temporary_.c_str());
   ::close(descriptor_);
 }
 
@@ -130,16 +135,19 @@ void ReplacedFile::commit(std::initializer_list<ReplacedFile*> files) {
     }
     if (::fsync(file->descriptor_) != 0) file->fail(errno);
   }
-  try {
-    if (files.size() > 1)
-      for (auto* file : files) file->keep_old();
-    for (auto* file : files) file->rename_to_target();
-  } catch (...) {
-    for (auto* file : files) file->roll_back();
-    throw;
+  {
+    const auto lock = UnfinishedFiles::all().naming();
+    try {
+      if (files.size() > 1)
+        for (auto* file : files) file->keep_old();
+      for (auto* file : files) file->rename_to_target();
+    } catch (...) {
+      for (auto* file : files) file->roll_back();
+      throw;
+    }
+    for (auto* file : files)
+      if (!file->old_.empty()) ::unlink(file->old_.c_str());
   }
-  for (auto* file : files)
-    if (!file->old_.empty()) ::unlink(file->old_.c_str());
   for (auto* file : files) file->sync_folder();
 }
 

@@ -30,8 +30,9 @@ class Block {
         sunlit_(count * states_ * 2),
         variance_(count * states_ * bands_) {}
 
-  void trace(std::size_t first, std::size_t count, std::uint32_t samples) {
+  void trace(std::size_t first, std::size_t count, std::uint32_t samples, const Progress& progress) {
     tbb::parallel_for(std::size_t{0}, count * reference_randomisations, [&](std::size_t item) {
+      if (progress.cancelled()) return;
       const std::uint64_t row = first + item / reference_randomisations;
       const SampleTarget target(facets_, {facets_.at(row)}, row);
       sampler_.sample(target, static_cast<std::uint32_t>(item % reference_randomisations), samples, 1, means_[item]);
@@ -128,7 +129,8 @@ SolveReport trace(const Scene& scene, const Facets& facets, const ReferenceSetti
     progress.check();
     progress.fraction("reference", static_cast<double>(first) / static_cast<double>(n));
     const std::size_t count = std::min(block_size, n - first);
-    arena.execute([&] { block.trace(first, count, samples); });
+    arena.execute([&] { block.trace(first, count, samples, progress); });
+    progress.check();
     block.collect(first, count, report, ray_count);
     sink.rows(block.rows(first, count));
   }

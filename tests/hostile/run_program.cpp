@@ -78,11 +78,19 @@ ProgramRun run_sunfleck(const std::vector<std::string>& arguments, const Program
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
     ended = waitpid(child, &status, WNOHANG) == child;
   }
-  if (!ended) {
-    if (!fate.stop_at.empty()) kill(child, fate.signal);
-    waitpid(child, &status, 0);
+  const auto began = std::chrono::steady_clock::now();
+  const auto seconds = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count(); };
+  while (!ended && seconds() < fate.stop_after_s) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    ended = waitpid(child, &status, WNOHANG) == child;
   }
   ProgramRun run;
+  if (!ended) {
+    const double asked = seconds();
+    if (!fate.stop_at.empty() || fate.stop_after_s > 0) kill(child, fate.signal);
+    waitpid(child, &status, 0);
+    run.seconds_to_stop = seconds() - asked;
+  }
   run.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   run.out = text_of(out);
   run.err = text_of(err);
