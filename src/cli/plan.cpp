@@ -167,6 +167,8 @@ void add_instantiation(const Scene& scene, const PlacedScene& placed, const Meth
   plan.items.push_back({"originals", true,
                         fmt::format("{} shared by {}: traced once, opened copy by copy",
                                     counted(predicted.originals, "original", "originals"), counted(predicted.copies, "copy", "copies"))});
+  if (placed.share < 1)
+    plan.items.push_back({"prediction", true, fmt::format("made of {} of the copies, the others taken alike", placed.copies.size())});
   add_policies(scene, choice.method, &predicted, plan.items);
   if (predicted.merged_copies > 0)
     plan.items.push_back(
@@ -265,8 +267,9 @@ Plan plan_of(const Scene& scene, const MethodChoice& choice, Progress& progress,
   add_scattering(scene, choice.method, plan.items);
   add_certificate(scene, choice.method, plan.items);
   const bool shares = choice.method == "instantiation";
-  const PlacedScene placed = shares ? place(scene) : PlacedScene{};
-  const std::uint64_t facets = shares ? placed.facets : plan.counts.facets();  // `only` and `stop_at` leave some closed
+  const PlacedScene placed = shares ? place(scene, most_copies_in_plan) : PlacedScene{};
+  const bool whole = shares && placed.share == 1;
+  const std::uint64_t facets = whole ? placed.facets : plan.counts.facets();  // `only` and `stop_at` leave some closed
   if (program > 0) plan.memory.push_back({"program", "the program as it starts", program});
   if (!shares) {
     plan.memory.push_back({"plants", "plants as read", held_bytes(scene)});
@@ -283,7 +286,7 @@ Plan plan_of(const Scene& scene, const MethodChoice& choice, Progress& progress,
   if (all_open) plan.memory.push_back({"layout", "copies, ground cells, and their names", layout});
   if (all_open) plan.memory.push_back({"file", "sums and rows on their way into the file", file});
   plan.work = {{"facets", "facets", facets},
-               {"organs", "organs", shares ? placed.organs : plan.counts.organs},
+               {"organs", "organs", whole ? placed.organs : plan.counts.organs},
                {"result_bytes", "result bytes before compression", facets * result_bytes_per_facet(scene)}};
   if (shares) {
     add_instantiation(scene, placed, choice, threads, progress, plan);

@@ -1,4 +1,5 @@
 // Where copies stand: single places, grids, and rows of a CSV file.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -64,6 +65,7 @@ std::vector<Placement> read_positions(const std::string& file) {
   std::string_view line;
   std::vector<std::size_t> columns;
   std::vector<Placement> all;
+  all.reserve(static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n')) + 1);
   while (lines.next(line)) {
     line = Words(line.substr(0, line.find('#'))).rest();
     if (line.empty()) continue;

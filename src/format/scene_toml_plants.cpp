@@ -186,7 +186,10 @@ class Names {
 };
 
 void append(std::vector<Placement>& all, std::vector<Placement> more) {
-  all.insert(all.end(), more.begin(), more.end());
+  if (all.empty())
+    all = std::move(more);
+  else
+    all.insert(all.end(), more.begin(), more.end());
 }
 
 void read_plant_entries(const TomlValue& plants, Scene& scene, Names& names) {

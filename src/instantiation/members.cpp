@@ -42,7 +42,11 @@ OriginalLight original_light(const Scene& scene, const Approximation& approximat
   OriginalLight out;
   out.facet_of_part.push_back(0);
   for (const auto& part : original.parts) {
-    auto entry = part.plant < scene.plants.size() ? scene.plants[part.plant] : approximation.pieces[part.plant - scene.plants.size()];
+    const auto& from = part.plant < scene.plants.size() ? scene.plants[part.plant] : approximation.pieces[part.plant - scene.plants.size()];
+    PlantEntry entry;  // not a copy: placements may be millions
+    entry.name = from.name;
+    entry.plant = from.plant;
+    entry.shape_optics = from.shape_optics;
     entry.placements = {{part.map}};
     const std::size_t entry_facets = entry.plant->facet_count();
     own.plants.push_back(std::move(entry));
@@ -135,7 +139,7 @@ Members with_light(const Scene& scene, const PlacedScene& placed, Approximation 
     out.maps.push_back(m.map);
     out.copies.copies.push_back({m.original, m.map.affine()});
   }
-  split_ground(placed.partial ? placed.near_ground : placed.ground, out);
+  split_ground(placed.partial ? placed.near_ground : placed.ground.written_out(), out);
   out.ground_facets = out.copies.ground.size();
   out.copies.ground.insert(out.copies.ground.end(), placed.far_ground.begin(), placed.far_ground.end());
   out.copies.periodic = scene.periodic;
@@ -148,15 +152,17 @@ struct Tangle {
   std::uint32_t a, b;
 };
 
-std::vector<Tangle> tangles(const Members& members, const MemberSurroundings& around) {
+std::vector<Tangle> tangles(const Members& members, const MemberSurroundings& around, const Progress& progress) {
   std::vector<std::vector<Tangle>> found(members.size());
   tbb::parallel_for(std::uint32_t{0}, static_cast<std::uint32_t>(members.size()), [&](std::uint32_t m) {
+    if (progress.cancelled()) return;
     const auto& segments = members.coarse_of(m).segments;
     std::map<std::uint32_t, std::uint32_t> met;
     for (const auto& segment : segments)
       if (const auto j = around.stands_between(m, segment); j != MemberSurroundings::none && j < members.size()) ++met[j];
     for (const auto& [j, n] : met) found[m].push_back({static_cast<double>(n) / static_cast<double>(segments.size()), m, j});
   });
+  progress.check();
   std::vector<Tangle> out;
   for (const auto& list : found) out.insert(out.end(), list.begin(), list.end());
   return out;
@@ -213,7 +219,7 @@ Members make_members(const Scene& scene, const PlacedScene& placed, const Classi
                               approximation.pieces.size(), approximation.closed));
   auto originals = find_originals(scene, placed, approximation);
   Members members = with_light(scene, placed, std::move(approximation), std::move(originals), coarse, elements_per_organ, seed, progress);
-  const auto list = tangles(members, MemberSurroundings(members, placed));
+  const auto list = tangles(members, MemberSurroundings(members, placed), progress);
   members.tangled = mean_share(members, list);
   const auto groups = groups_of(members, list);
   if (groups.empty()) return members;
@@ -227,7 +233,7 @@ Members make_members(const Scene& scene, const PlacedScene& placed, const Classi
   members = with_light(scene, placed, std::move(approximation), std::move(found), coarse, elements_per_organ, seed, progress);
   members.made_with = std::max(members.made_with, made_apart);
   members.merged = merged_copies;
-  members.tangled = mean_share(members, tangles(members, MemberSurroundings(members, placed)));
+  members.tangled = mean_share(members, tangles(members, MemberSurroundings(members, placed), progress));
   return members;
 }
 

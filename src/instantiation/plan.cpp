@@ -53,7 +53,14 @@ InstantiationSharing sharing_of(const Members& members, const PlacedScene& place
   out.structures = members.approximation.closed;
   for (std::size_t m = 0; m < members.size(); ++m) out.copies_of_pieces += members.found.members[m].stands_in;
   for (std::size_t c = 0; c < placed.copies.size(); ++c) out.opened_alone += !members.approximation.of_plant[placed.plant_of(c)].empty();
+  for (auto* n : {&out.copies, &out.merged_copies, &out.structures, &out.copies_of_pieces, &out.opened_alone})
+    *n = whole(static_cast<double>(*n) / placed.share);
   return out;
+}
+
+/// Of the whole scene, where `placed` lists a part of it.
+std::uint64_t facets_in_all(const PlacedScene& placed) {
+  return whole(static_cast<double>(placed.solved_facets()) / placed.share);
 }
 
 /// Lines towards the sun that meet the cells of a member, each cell at most as often as LitCells counts.
@@ -77,12 +84,13 @@ class Planner {
   Planner(const Scene& scene, const PlacedScene& placed, const InstantiationSettings& settings, Progress& progress)
       : scene_(scene),
         placed_(placed),
-        density_(adapted(settings.density, placed.solved_facets())),
+        density_(adapted(settings.density, facets_in_all(placed))),
         seed_(settings.seed),
         tolerance_(settings.tolerance > 0 ? settings.tolerance : density_.tolerance),
         progress_(progress),
         states_(scene.states.size()),
         columns_(states_ * scene.band_count()),
+        times_(1 / placed.share),
         lights_(light_sources(scene.states)),
         members_(pilot_members(scene, placed, settings, density_, progress)) {}
 
@@ -131,6 +139,7 @@ class Planner {
     double held = 0, pieces = 0, made_with = 0;  // operators are made one after the other
     for (const auto& piece : members_.approximation.pieces) pieces += static_cast<double>(held_bytes(*piece.plant));
     auto all = static_cast<double>(members_.bytes());
+    all += (times_ - 1) * static_cast<double>(members_.size() * (sizeof(Similarity) + sizeof(SurfaceCopy)));
     for (std::size_t o = 0; o < members_.originals.size(); ++o) {
       const auto& original = members_.originals[o];
       const auto wanted = coarse_density(scene_, members_.found.originals[o], density_.coarse);
@@ -156,13 +165,14 @@ class Planner {
     double cells = 0;
     std::vector<double> of_member(members_.size(), 0.0);
     for (std::size_t m = 0; m < members_.size(); ++m) cells += static_cast<double>(members_.original_of(m).elements.surface.cells());
+    cells *= times_;
     for (std::size_t k = 0; k < lights_.suns.size(); ++k) {
       hold("sun", static_cast<double>(k + 1) * cells);
       pass("sun", static_cast<double>(k + 5) * cells);  // two counts a cell
       tbb::parallel_for(std::size_t{0}, members_.size(), [&](std::size_t m) {
         of_member[m] = sun_meetings(members_.original_of(m), members_.maps[m], lights_.suns[k]->direction, lines_of_sun());
       });
-      for (const double n : of_member) sun_fragments_ += n;
+      for (const double n : of_member) sun_fragments_ += times_ * n;
     }
   }
   double lines_of_sun() const { return density_.sun_samples / (pitch_ * pitch_); }
@@ -170,11 +180,11 @@ class Planner {
   void rays() {
     const MemberSurroundings around(members_, placed_);
     double ends = 0;
-    for (std::size_t m = 0; m < members_.size(); ++m) ends += size_of(m).points;
+    for (std::size_t m = 0; m < members_.size(); ++m) ends += times_ * size_of(m).points;
     const auto ground = empty_ground_view(scene_, members_.solved_ground(), lights_, rays_of_ground(members_, density_));
     sides_of_ground_ = static_cast<double>(ground.seen.size());
     rays_ = ends + sides_of_ground_ * ground.rays;
-    hold("rays", static_cast<double>(around.bytes() + ground.bytes()) + ends * sizeof(RayEnd));
+    hold("rays", times_ * static_cast<double>(around.bytes()) + static_cast<double>(ground.bytes()) + ends * sizeof(RayEnd));
   }
   const OperatorSize& size_of(std::size_t m) const { return coarse_[members_.found.members[m].original]; }
 
@@ -183,7 +193,7 @@ class Planner {
     double fields = 0;
     for (std::uint32_t m = 0; m < all.size(); ++m) {
       all[m] = m;
-      fields += static_cast<double>(size_of(m).fields);
+      fields += times_ * static_cast<double>(size_of(m).fields);
     }
     hold("lanes", static_cast<double>(lanes_at_once(batches_of(members_, columns_, all), [&](const Batch& b) {
            return 2 * 2 * members_.originals[b.original].elements.size() + coarse_[b.original].fields;
@@ -231,7 +241,7 @@ class Planner {
         hold("fine", fine.bytes);
       }
       pass_lanes(step.batches, original, fine);
-      gather_rays_ += static_cast<double>(step.members.size()) * fine.points;
+      gather_rays_ += times_ * static_cast<double>(step.members.size()) * fine.points;
       send();
       if (!step.last || !order.forgets) continue;
       originals_ += coarse_[step.original].kept - coarse_[step.original].bytes - bare_bytes(original);
@@ -263,7 +273,7 @@ class Planner {
     pass("fine", bare + size.built_with);
     hold("fine", bare + size.bytes + static_cast<double>(lights_.suns.size() * original.elements.surface.cells()));
     wait(copy);
-    hold("rows", waiting_bytes_);
+    hold("rows", times_ * waiting_bytes_);
     const auto lanes = lanes_at_once(batches_of_original(0, {0}, columns_),
                                      [&](const Batch&) { return opening_lanes(original, LineOperator::Seen::elements, size.fields); });
     pass("lanes", size.points * sizeof(RayEnd) + static_cast<double>(lanes));
@@ -282,7 +292,7 @@ class Planner {
   void rows_of(const std::vector<std::uint32_t>& members) {
     for (const auto m : members)
       for (const auto c : members_.found.members[m].copies) wait(c);
-    hold("rows", waiting_bytes_);
+    hold("rows", times_ * waiting_bytes_);
   }
   void send() {
     const double values = static_cast<double>(columns_ + (lights_.suns.empty() ? 0 : states_)) * 2;
@@ -290,7 +300,7 @@ class Planner {
       next_facet_ += waiting_.begin()->second;
       waiting_bytes_ -= values * sizeof(float) * static_cast<double>(waiting_.begin()->second);
     }
-    hold("rows", waiting_bytes_);
+    hold("rows", times_ * waiting_bytes_);
   }
 
   const Scene& scene_;
@@ -300,6 +310,7 @@ class Planner {
   const double tolerance_;
   Progress& progress_;
   const std::size_t states_, columns_;
+  const double times_;  ///< as many copies as those that are laid out
   const LightSources lights_;
   const Members members_;
   std::vector<OperatorSize> coarse_;  ///< [originals]
@@ -334,7 +345,7 @@ InstantiationDensity adapted(InstantiationDensity density, std::uint64_t facets)
 
 InstantiationSharing plan_sharing(const Scene& scene, const PlacedScene& placed, const InstantiationSettings& settings,
                                   Progress& progress) {
-  const auto density = adapted(settings.density, placed.solved_facets());
+  const auto density = adapted(settings.density, facets_in_all(placed));
   return sharing_of(pilot_members(scene, placed, settings, density, progress), placed);
 }
 

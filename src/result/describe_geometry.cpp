@@ -59,8 +59,38 @@ struct Attributes {
   }
 };
 
+/// Cells of flat ground with shared corners, numbered as they are first met: two rows of corners are known at a time.
+Mesh flat_ground_mesh(const GroundFacets& facets) {
+  constexpr std::uint32_t unknown = 0xffffffffu;
+  const std::size_t columns = facets.cells()[0];
+  Mesh mesh;
+  mesh.triangles.reserve(facets.size());
+  mesh.vertices.reserve((columns + 1) * (std::size_t{facets.cells()[1]} + 1));
+  std::vector<std::uint32_t> below(columns + 1, unknown), above(columns + 1, unknown);
+  const auto vertex = [&](std::uint32_t& known, const Vec3& p) {
+    if (known == unknown) {
+      known = static_cast<std::uint32_t>(mesh.vertices.size());
+      mesh.vertices.push_back(p);
+    }
+    return known;
+  };
+  for (std::size_t f = 0; f < facets.size(); f += 2) {
+    const std::size_t i = f / 2 % columns;
+    if (f > 0 && i == 0) {
+      below.swap(above);
+      std::fill(above.begin(), above.end(), unknown);
+    }
+    const Triangle low = facets[f], high = facets[f + 1];
+    const auto a = vertex(below[i], low[0]), b = vertex(below[i + 1], low[1]), c = vertex(above[i + 1], low[2]);
+    mesh.triangles.push_back({a, b, c});
+    mesh.triangles.push_back({a, c, vertex(above[i], high[2])});
+  }
+  return mesh;
+}
+
 /// Ground facets with shared corners.
-Mesh ground_mesh(const std::vector<Triangle>& facets) {
+Mesh ground_mesh(const GroundFacets& facets) {
+  if (facets.cells()[0] > 0) return flat_ground_mesh(facets);
   struct Hash {
     std::size_t operator()(const std::array<double, 3>& p) const {
       std::size_t h = 0;
@@ -70,7 +100,8 @@ Mesh ground_mesh(const std::vector<Triangle>& facets) {
   };
   Mesh mesh;
   std::unordered_map<std::array<double, 3>, std::uint32_t, Hash> known;
-  for (const auto& corners : facets) {
+  for (std::size_t f = 0; f < facets.size(); ++f) {
+    const Triangle corners = facets[f];
     std::array<std::uint32_t, 3> triangle;
     for (std::size_t c = 0; c < 3; ++c) {
       const Vec3& p = corners[c];

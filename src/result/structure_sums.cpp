@@ -41,10 +41,8 @@ PlacedScene structures_layout(const Scene& scene, const PlacedScene& placed) {
   out.plant_facets = placed.plant_facets;
   out.plant_organs = placed.plant_organs;
   out.ground = placed.ground;
-  out.ground_organ = placed.ground_organ;
-  out.ground_names = placed.ground_names;
   out.facets = placed.ground.size();
-  out.organs = placed.ground_names.size();
+  out.organs = placed.ground.organs();
   out.closed = placed.closed;
   out.partial = placed.partial;
   std::map<std::uint32_t, PlantStructures> known;

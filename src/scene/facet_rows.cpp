@@ -15,6 +15,12 @@ class Interned {
     if (added) rows_.push_back(text);
     return place->second;
   }
+  /// Of names of which none comes twice, and after which row() is not asked: nothing more is remembered.
+  std::uint32_t last_row(const std::string& text) {
+    if (const auto place = index_.find(text); place != index_.end()) return place->second;
+    rows_.push_back(text);
+    return static_cast<std::uint32_t>(rows_.size() - 1);
+  }
 
  private:
   std::vector<std::string>& rows_;
@@ -79,7 +85,7 @@ std::uint32_t FacetRows::material(CopyFacet f) const {
 }
 
 std::uint32_t FacetRows::organ(CopyFacet f) const {
-  if (is_ground(f.copy)) return placed_.ground_organ[f.facet];
+  if (is_ground(f.copy)) return placed_.ground.organ(f.facet);
   const auto plant = placed_.copies[f.copy].plant;
   return plants_[plant].shape_organ[shape_of(plant, f.facet)];
 }
@@ -87,8 +93,8 @@ std::uint32_t FacetRows::organ(CopyFacet f) const {
 std::vector<std::uint32_t> FacetRows::organ_facets(std::uint32_t copy, std::uint32_t organ) const {
   std::vector<std::uint32_t> facets;
   if (is_ground(copy)) {
-    for (std::uint32_t f = 0; f < placed_.ground_organ.size(); ++f)
-      if (placed_.ground_organ[f] == organ) facets.push_back(f);
+    for (std::size_t f = placed_.ground.first_facet(organ); f < placed_.ground.size() && placed_.ground.organ(f) == organ; ++f)
+      facets.push_back(static_cast<std::uint32_t>(f));
     return facets;
   }
   const auto& rows = plants_[placed_.copies[copy].plant];
@@ -119,9 +125,11 @@ OrganNames organ_names(const FacetRows& rows) {
   }
   if (scene.ground) {
     out.ground.plant = plants.row("ground");
-    for (const auto& name : placed.ground_names) out.ground.name.push_back(names.row(name));
-    if (!placed.ground_names.empty()) out.ground.type.assign(placed.ground_names.size(), types.row("ground"));
-    out.ground.structure.assign(placed.ground_names.size(), no_parent);
+    const std::size_t organs = placed.ground.organs();
+    out.ground.name.reserve(organs);
+    for (std::size_t o = 0; o < organs; ++o) out.ground.name.push_back(names.last_row(placed.ground.organ_name(o)));
+    if (organs > 0) out.ground.type.assign(organs, types.row("ground"));
+    out.ground.structure.assign(organs, no_parent);
   }
   return out;
 }

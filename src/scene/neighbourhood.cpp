@@ -189,14 +189,14 @@ class Neighbourhood {
     const auto cells = [&](double length) { return static_cast<std::uint32_t>(std::clamp(std::ceil(length / cell), 1.0, 64.0)); };
     placed_.near_field = field;
     placed_.near_cells = {cells(field[2] - field[0]), cells(field[3] - field[1])};
-    placed_.near_ground = ground_cells(field, placed_.near_cells, ground.height);
+    placed_.near_ground = GroundFacets(field, placed_.near_cells, ground.height).written_out();
     const std::array<double, 4> rest[4] = {{whole[0], whole[1], whole[2], field[1]},
                                            {whole[0], field[3], whole[2], whole[3]},
                                            {whole[0], field[1], field[0], field[3]},
                                            {field[2], field[1], whole[2], field[3]}};
     for (const auto& r : rest)
       if (r[0] < r[2] && r[1] < r[3])
-        for (const auto& t : ground_cells(r, {1, 1}, ground.height)) placed_.far_ground.push_back(t);
+        for (const auto& t : GroundFacets(r, {1, 1}, ground.height).written_out()) placed_.far_ground.push_back(t);
   }
 
   const Scene& scene_;
@@ -235,12 +235,12 @@ PlacedScene with_surroundings(const PlacedScene& placed) {
   out.first_ground_facet = out.facets;
   out.first_ground_organ = out.organs;
   if (placed.partial) {
-    for (const auto* part : {&placed.near_ground, &placed.far_ground}) out.ground.insert(out.ground.end(), part->begin(), part->end());
-    if (!out.ground.empty()) out.ground_names.push_back("ground");
-    out.ground_organ.assign(out.ground.size(), 0);
+    std::vector<Triangle> facets = placed.near_ground;
+    facets.insert(facets.end(), placed.far_ground.begin(), placed.far_ground.end());
+    out.ground = GroundFacets(std::move(facets));
   }
   out.facets += out.ground.size();
-  out.organs += out.ground_names.size();
+  out.organs += out.ground.organs();
   return out;
 }
 

@@ -1,6 +1,7 @@
 #include <sunfleck/scene/placed_scene.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <new>
 #include <stdexcept>
 #include <unordered_map>
@@ -22,8 +23,8 @@ std::string label(const std::string& name, std::size_t i) {
 
 class Placing {
  public:
-  Placing(const Scene& scene, PlacedScene& out)
-      : scene_(scene), out_(out), only_(scene.solve.only, location(scene.file, 0, "solve.only")) {}
+  Placing(const Scene& scene, std::uint64_t most_copies, PlacedScene& out)
+      : scene_(scene), most_copies_(most_copies), out_(out), only_(scene.solve.only, location(scene.file, 0, "solve.only")) {}
 
   void run() {
     out_.plant_facets.assign(scene_.plants.size(), 0);
@@ -35,22 +36,24 @@ class Placing {
       all += copies[p];
       if (copies[p] > 0) count_plant(p);
     }
+    if (!out_.partial && scene_.solve.stop_at.empty() && all > most_copies_)
+      out_.share = static_cast<double>(most_copies_) / static_cast<double>(all);
     try {
       if (!out_.partial) {
-        out_.copies.reserve(all);
-        out_.paths.reserve(all);
+        out_.copies.reserve(std::min(all, most_copies_));
+        out_.paths.reserve(std::min(all, most_copies_));
       }
       const Match match = out_.partial ? Match::inside : Match::complete;
       for (std::uint32_t p = 0; p < scene_.plants.size(); ++p) {
         const auto& entry = scene_.plants[p];
-        for (std::size_t i = 0; i < entry.placements.size(); ++i) {
+        for (std::size_t i = 0, n = listed(entry.placements.size()); i < n; ++i) {
           path_ = {label(entry.name, i)};
           visit(false, p, entry.placements[i].map, match);
         }
       }
       for (std::uint32_t g = 0; g < scene_.groups.size(); ++g) {
         const auto& group = scene_.groups[g];
-        for (std::size_t i = 0; i < group.placements.size(); ++i) {
+        for (std::size_t i = 0, n = listed(group.placements.size()); i < n; ++i) {
           path_ = {label(group.name, i)};
           visit(true, g, group.placements[i].map, match);
         }
@@ -60,6 +63,7 @@ class Placing {
     } catch (const std::length_error&) {
       throw_too_many(all);
     }
+    if (out_.share < 1 && !out_.copies.empty()) out_.share = static_cast<double>(out_.copies.size()) / static_cast<double>(all);
     if (const auto unmet = only_.unmet(); !unmet.empty())
       throw InputError(
           location(scene_.file, 0, "solve.only"), fmt::format("\"{}\", which no placement has", unmet),
@@ -70,7 +74,7 @@ class Placing {
     if (out_.partial) return;
     add_ground(*scene_.ground);
     out_.facets += out_.ground.size();
-    out_.organs += out_.ground_names.size();
+    out_.organs += out_.ground.organs();
   }
 
  private:
@@ -78,6 +82,11 @@ class Placing {
 
   [[noreturn]] void throw_too_many(std::uint64_t all) const {
     throw OutOfMemory(copies_text(all) + " copies of plants; fewer copies, or `only` in [solve] for some of them");
+  }
+
+  /// Of so many placements, those that are listed.
+  std::size_t listed(std::size_t placements) const {
+    return out_.share < 1 ? static_cast<std::size_t>(std::ceil(static_cast<double>(placements) * out_.share)) : placements;
   }
 
   std::string path() const {
@@ -100,6 +109,7 @@ class Placing {
     std::unordered_map<std::string, std::size_t> count;
     const auto& group = scene_.groups[index];
     for (const auto& member : group.members) {
+      if (out_.share < 1 && out_.copies.size() >= 2 * most_copies_) return;
       const std::string& name = member.is_group ? scene_.groups[member.index].name : scene_.plants[member.index].name;
       path_.push_back(label(name, count[name]++));
       visit(member.is_group, member.index, map * member.placement.map, match);
@@ -147,21 +157,18 @@ class Placing {
 
   void add_ground(const Ground& ground) {
     if (ground.mesh) {
-      out_.ground_names.push_back("ground");
-      for (std::size_t t = 0; t < ground.mesh->triangles.size(); ++t) out_.ground.push_back(ground.mesh->corners(t));
-      out_.ground_organ.assign(out_.ground.size(), 0);
+      std::vector<Triangle> facets;
+      facets.reserve(ground.mesh->triangles.size());
+      for (std::size_t t = 0; t < ground.mesh->triangles.size(); ++t) facets.push_back(ground.mesh->corners(t));
+      out_.ground = GroundFacets(std::move(facets));
       return;
     }
     const double x0 = ground.centre[0] - 0.5 * ground.size[0], y0 = ground.centre[1] - 0.5 * ground.size[1];
-    out_.ground = ground_cells({x0, y0, x0 + ground.size[0], y0 + ground.size[1]}, ground.cells, ground.height);
-    for (std::uint32_t j = 0; j < ground.cells[1]; ++j)
-      for (std::uint32_t i = 0; i < ground.cells[0]; ++i) {
-        out_.ground_organ.insert(out_.ground_organ.end(), 2, static_cast<std::uint32_t>(out_.ground_names.size()));
-        out_.ground_names.push_back("cell_" + std::to_string(i) + "_" + std::to_string(j));
-      }
+    out_.ground = GroundFacets({x0, y0, x0 + ground.size[0], y0 + ground.size[1]}, ground.cells, ground.height);
   }
 
   const Scene& scene_;
+  const std::uint64_t most_copies_;
   PlacedScene& out_;
   PathPatterns only_;
   std::vector<std::string> path_;
@@ -199,24 +206,32 @@ std::string organ_name(const Plant& plant, std::uint32_t structure) {
   return s.name.empty() ? plant.types[s.type] + "_" + std::to_string(structure) : s.name;
 }
 
-std::vector<Triangle> ground_cells(const std::array<double, 4>& field, const std::array<std::uint32_t, 2>& cells, double height) {
-  const auto columns = cells[0], rows = cells[1];  // Clang 14 does not capture structured bindings
-  const double width = field[2] - field[0], depth = field[3] - field[1];
-  const auto at = [&](std::uint32_t i, std::uint32_t j) {
-    return Vec3{field[0] + width * i / columns, field[1] + depth * j / rows, height};
+Triangle GroundFacets::operator[](std::size_t facet) const {
+  if (!flat()) return facets_[facet];
+  const double width = field_[2] - field_[0], depth = field_[3] - field_[1];
+  const std::size_t cell = facet / 2, i = cell % cells_[0], j = cell / cells_[0];
+  const auto at = [&](std::size_t column, std::size_t row) {
+    return Vec3{field_[0] + width * static_cast<double>(column) / cells_[0], field_[1] + depth * static_cast<double>(row) / cells_[1],
+                height_};
   };
-  std::vector<Triangle> out;
-  for (std::uint32_t j = 0; j < rows; ++j)
-    for (std::uint32_t i = 0; i < columns; ++i) {
-      out.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
-      out.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
-    }
+  if (facet % 2 == 0) return {at(i, j), at(i + 1, j), at(i + 1, j + 1)};
+  return {at(i, j), at(i + 1, j + 1), at(i, j + 1)};
+}
+
+std::vector<Triangle> GroundFacets::written_out() const {
+  std::vector<Triangle> out(size_);
+  for (std::size_t f = 0; f < size_; ++f) out[f] = (*this)[f];
   return out;
 }
 
-PlacedScene place(const Scene& scene) {
+std::string GroundFacets::organ_name(std::size_t organ) const {
+  if (!flat()) return "ground";
+  return "cell_" + std::to_string(organ % cells_[0]) + "_" + std::to_string(organ / cells_[0]);
+}
+
+PlacedScene place(const Scene& scene, std::uint64_t most_copies) {
   PlacedScene out;
-  Placing(scene, out).run();
+  Placing(scene, most_copies, out).run();
   if (!out.closed.empty()) add_neighbourhood(scene, out);
   if (out.facets == 0 && out.near.empty() && scene.sensors.empty())
     throw InputError(location(scene.file), "no facet", "at least one plant placed in the world, or a ground");

@@ -68,7 +68,8 @@ DrawnScene::DrawnScene(const Scene& scene, const PlacedScene& placed) : material
     for (const auto& shape : entry.plant->shapes) starts.push_back(starts.back() + shape.triangle_count);
   }
   for (const auto& copy : placed.copies) geometry_.copies.push_back({copy.plant, copy.map, copy.first_facet});
-  for (const auto& t : placed.ground) {
+  for (std::size_t f = 0; f < placed.ground.size(); ++f) {
+    const Triangle t = placed.ground[f];
     const auto first = static_cast<std::uint32_t>(geometry_.ground.vertices.size());
     geometry_.ground.vertices.insert(geometry_.ground.vertices.end(), t.begin(), t.end());
     geometry_.ground.triangles.push_back({first, first + 1, first + 2});

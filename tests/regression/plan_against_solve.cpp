@@ -175,3 +175,19 @@ TEST_CASE("plan against solve: plants whose branches share originals until they 
   CHECK(static_cast<double>(figure(plan.counts, "gather_fragments")) ==
         Approx(static_cast<double>(figure(exact.counts, "gather_fragments"))).epsilon(0.02));
 }
+
+TEST_CASE("a plan made of a part of the copies predicts what one of all of them does", "[plan]") {
+  auto scene = grove(8, 2);
+  scene.ground->cells = {2, 2};
+  InstantiationSettings settings;
+  settings.threads = 2;
+  const auto part_placed = place(scene, 16);
+  REQUIRE(part_placed.share == 0.25);
+  const auto all = plan_instantiation(scene, place(scene), settings, silent()),
+             part = plan_instantiation(scene, part_placed, settings, silent());
+  CHECK(part.copies == all.copies);
+  CHECK(part.elements == all.elements);
+  check_figures(part.counts, all.counts);
+  check_figures(part.memory, all.memory, "lanes");  // of as many batches as threads: the same
+  CHECK(figure(part.memory, "lanes") <= figure(all.memory, "lanes"));
+}

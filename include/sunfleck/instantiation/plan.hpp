@@ -14,6 +14,9 @@ namespace sunfleck {
 /// are of several per cent.
 inline constexpr double much_tangled = 0.01;
 
+/// Of scenes with more copies, predictions are made of a part of so many (place()), and take as much of the others.
+inline constexpr std::uint64_t most_copies_in_plan = 200'000;
+
 /// What copies share.
 struct InstantiationSharing {
   std::uint64_t originals = 0, copies = 0, merged_copies = 0, elements = 0;

@@ -46,7 +46,7 @@ class FacetRows {
     return is_ground(copy) ? placed_.ground.size() : placed_.plant_facets[placed_.copies[copy].plant];
   }
   std::uint64_t organ_count(std::uint32_t copy) const {
-    return is_ground(copy) ? placed_.ground_names.size() : placed_.plant_organs[placed_.copies[copy].plant];
+    return is_ground(copy) ? placed_.ground.organs() : placed_.plant_organs[placed_.copies[copy].plant];
   }
   bool is_ground(std::uint32_t copy) const { return copy == placed_.copies.size(); }
 
@@ -93,7 +93,7 @@ OrganNames organ_names(const FacetRows& rows);
 template <class Visit>
 void FacetRows::visit(std::uint32_t copy, std::uint64_t first, std::uint64_t last, Visit&& visit) const {
   if (is_ground(copy)) {
-    for (std::uint64_t f = first; f < last; ++f) visit(f, placed_.ground[f], ground_material(), placed_.ground_organ[f]);
+    for (std::uint64_t f = first; f < last; ++f) visit(f, placed_.ground[f], ground_material(), placed_.ground.organ(f));
     return;
   }
   const auto& placed = placed_.copies[copy];

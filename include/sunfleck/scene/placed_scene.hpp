@@ -1,9 +1,12 @@
 // Which copies a scene holds and which rows of the result are theirs, without writing them out.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <sunfleck/scene/scene.hpp>
@@ -59,16 +62,48 @@ struct ClosedCopy {
   std::uint32_t structure = 0;  ///< row of PlacedScene::closed
 };
 
+/// Facets of the ground in their order, world [m], and the organs that they make: cells of two facets of a flat one, made on request so
+/// that they cost nothing; the whole of a mesh.
+class GroundFacets {
+ public:
+  GroundFacets() = default;
+  /// A mesh: one organ, "ground".
+  explicit GroundFacets(std::vector<Triangle> facets) : facets_(std::move(facets)), size_(facets_.size()) {}
+  /// Two triangles a cell, rows along x from the lowest x and y, front upwards. `field`: x_low, y_low, x_high, y_high [m].
+  GroundFacets(const std::array<double, 4>& field, const std::array<std::uint32_t, 2>& cells, double height)
+      : field_(field), cells_(cells), height_(height), size_(std::size_t{2} * cells[0] * cells[1]) {}
+
+  std::size_t size() const { return size_; }
+  bool empty() const { return size_ == 0; }
+  Triangle operator[](std::size_t facet) const;
+  std::vector<Triangle> written_out() const;
+
+  /// Cells along x and y of a flat one; 0 of a mesh.
+  const std::array<std::uint32_t, 2>& cells() const { return cells_; }
+  std::size_t organs() const { return flat() ? size_ / 2 : std::min<std::size_t>(size_, 1); }
+  std::uint32_t organ(std::size_t facet) const { return flat() ? static_cast<std::uint32_t>(facet / 2) : 0; }
+  /// First of the facets of an organ.
+  std::size_t first_facet(std::size_t organ) const { return flat() ? 2 * organ : 0; }
+  std::string organ_name(std::size_t organ) const;
+
+ private:
+  bool flat() const { return cells_[0] > 0; }
+
+  std::vector<Triangle> facets_;
+  std::array<double, 4> field_{};
+  std::array<std::uint32_t, 2> cells_{0, 0};
+  double height_ = 0;
+  std::size_t size_ = 0;
+};
+
 /// Rows of facets and organs in the order of the result file: plants in scene order (placements in their order), groups in scene order
-/// with their placements, members in theirs; then ground cells. Memory: some 120 bytes a copy and what `ground` holds.
+/// with their placements, members in theirs; then ground cells. Memory: some 150 bytes a copy, and what a mesh of the ground holds.
 struct PlacedScene {
   std::vector<PlacedCopy> copies;
   std::vector<std::string> paths;           ///< per copy: "tile[3]/coffee[1]"
   std::vector<std::uint64_t> plant_facets;  ///< per row of Scene::plants: facets of one copy
   std::vector<std::uint64_t> plant_organs;  ///< per row of Scene::plants: organs of one copy
-  std::vector<Triangle> ground;             ///< facets of the ground, world [m]
-  std::vector<std::uint32_t> ground_organ;  ///< [ground facets] row among the ground's organs
-  std::vector<std::string> ground_names;    ///< per organ of the ground
+  GroundFacets ground;
   std::uint64_t first_ground_facet = 0, first_ground_organ = 0;
   std::uint64_t facets = 0, organs = 0;  ///< in all
 
@@ -81,6 +116,7 @@ struct PlacedScene {
   std::array<double, 4> near_field{};  ///< x_low, y_low, x_high, y_high of near_ground, which stands for far_ground tile by tile [m]
   std::array<std::uint32_t, 2> near_cells{1, 1};  ///< two triangles each, as ground_cells are laid
   bool partial = false;                           ///< `only` is given
+  double share = 1;                               ///< of all copies that are listed: less where place() was given a limit
 
   /// Copies in which light is solved: those with rows, then `near`; `far` follows them.
   std::size_t solved() const { return copies.size() + near.size(); }
@@ -101,7 +137,9 @@ struct PlacedScene {
 /// if they stand between what is opened and a sun; farther ones are listed as far as 50 plant heights, at most 50,000. Scenes of at most
 /// 2 million facets and periodic ones are near as a whole. Throws InputError if there is no facet, more copies than memory holds, or a
 /// pattern of `only` that meets nothing.
-PlacedScene place(const Scene& scene);
+/// `most_copies`: of scenes with more, as large a part of every plant's and group's placements is listed, for estimates; `facets` and
+/// `organs` count that part. Not with `only` and `stop_at`.
+PlacedScene place(const Scene& scene, std::uint64_t most_copies = std::numeric_limits<std::uint64_t>::max());
 
 /// The same scene with rows for what is near and far as well, after those of what is opened, and, with `only`, for the ground about it.
 PlacedScene with_surroundings(const PlacedScene& placed);
