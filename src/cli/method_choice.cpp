@@ -9,6 +9,7 @@
 #include <sunfleck/core/names.hpp>
 #include <sunfleck/instantiation/plan.hpp>
 #include <sunfleck/policy/policy_toml.hpp>
+#include <sunfleck/scene/extent.hpp>
 
 #include "cli/text_units.hpp"
 
@@ -17,6 +18,8 @@ namespace sunfleck {
 namespace {
 
 const std::vector<std::string> methods{"instantiation", "clustering", "flat", "direct", "reference"};
+
+constexpr double much_covered = 64;  // periodic cells that one plant covers
 
 constexpr std::array<Quality, 3> qualities{Quality::draft, Quality::standard, Quality::fine};
 
@@ -62,11 +65,14 @@ MethodReason default_method(const Scene& scene, Quality quality, Progress& progr
   if (!scene.lamps.empty()) return {"clustering", "instantiation knows no lamps"};
   if (!scene.sensors.empty()) return {"clustering", "instantiation knows no sensors"};
   if (!repeats(scene)) return {"clustering", "too little repeats for instantiation to pay"};
+  if (const double covered = most_cells_covered(scene); covered > much_covered)
+    return {"clustering",
+            fmt::format("plants cover up to {:.0f} periodic cells, far into images of their own: too much for instantiation", covered)};
   InstantiationSettings settings;
   settings.density = instantiation_density(quality);
   const auto classes = classes_of_policies(scene);
   settings.classes = classes ? &*classes : nullptr;
-  const auto plan = plan_sharing(scene, place(scene), settings, progress);
+  const auto plan = plan_sharing(scene, place(scene, most_copies_in_plan), settings, progress);
   if (plan.tangled > much_tangled)
     return {"clustering",
             fmt::format("{:.1f} % of what is seen inside plants is hidden by others that reach into them: too much for instantiation",

@@ -72,8 +72,8 @@ int verb_plan(const PlanOptions& options, Progress& progress) {
   std::optional<tbb::global_control> limit;
   if (options.threads > 0) limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(options.threads));
   const Scene scene = read_scene(options.scene);
-  const MethodChoice choice = choose_method(options.method, options.quality, scene, progress);
   for (const auto& note : scene.notes) progress.line("note: " + note);
+  const MethodChoice choice = choose_method(options.method, options.quality, scene, progress);
   const Plan plan = make_plan(scene, choice, progress, bytes_at_start, options.threads);
   if (options.json)
     fmt::print("{}\n", json_text(json_of(scene, plan)));

@@ -40,7 +40,6 @@ namespace {
 constexpr int not_as_asked = 3;  // exit code: did not converge, is inaccurate, or misses a wanted error
 
 void say_what_was_read(const Scene& scene, const PlacedScene& placed, double seconds, Progress& progress) {
-  for (const auto& note : scene.notes) progress.line("note: " + note);
   progress.line(fmt::format("read {}: {} of plants, {} of the ground, {}, {}, {} ({:.2f} s)", scene.file,
                             counted(placed.first_ground_facet, "facet", "facets"), placed.facets - placed.first_ground_facet,
                             counted(placed.organs, "organ", "organs"), counted(scene.band_count(), "band", "bands"),
@@ -168,6 +167,7 @@ int verb_solve(const SolveOptions& options, Progress& progress) {
   std::vector<std::string> outputs{options.result};
   if (options.picture) outputs.push_back(*options.picture);
   prepare_outputs(outputs, progress);
+  for (const auto& note : scene.notes) progress.line("note: " + note);
   if (!options.only.empty()) scene.solve.only = options.only;
   if (options.stop_at) scene.solve.stop_at = stop_from_text(*options.stop_at);
   std::vector<double> goal;  // wanted errors; empty: none

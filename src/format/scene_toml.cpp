@@ -8,6 +8,7 @@
 
 #include <sunfleck/core/error.hpp>
 #include <sunfleck/core/input_file.hpp>
+#include <sunfleck/scene/extent.hpp>
 #include <sunfleck/scene/plant_sizes.hpp>
 
 #include <format/scene_toml_parts.hpp>
@@ -120,6 +121,7 @@ Scene read_scene(const std::string& file) {
   read_sensors(root, scene);
   check_scene(scene);
   for (auto& note : notes_on_sizes(scene, scene_sizes(scene))) scene.notes.push_back(std::move(note));
+  for (auto& note : notes_on_extent(scene)) scene.notes.push_back(std::move(note));
   return scene;
 }
 

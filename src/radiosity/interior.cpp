@@ -27,7 +27,7 @@ std::vector<bool> interior_sides(const Elements& e, double pitch, std::uint64_t 
     if (progress.cancelled()) return;
     LineBundle& bundle = bundles.local();
     const Vec3 direction = hemisphere_direction(d, directions, mix(seed, interior_stream));
-    trace_lines(e.surface, project_set_member(e.surface, direction, d, pitch, mix(seed, interior_stream, 1)), bundle);
+    trace_lines(e.surface, project_set_member(e.surface, direction, d, pitch, mix(seed, interior_stream, 1)), bundle, LinesKept::met);
     const auto organ_side = [&](std::uint32_t cell_side) { return 2 * e.organ_of_row[e.row_of_cell[cell_side >> 1]] + (cell_side & 1u); };
     for (std::size_t q = 0; q + 1 < bundle.start.size(); ++q) {
       const std::uint32_t begin = bundle.start[q], end = bundle.start[q + 1];

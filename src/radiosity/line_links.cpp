@@ -399,7 +399,7 @@ LineLinks line_links(const Elements& e, const ClusterTree* tree, const SunReflec
     tbb::parallel_for(std::size_t{0}, batch.size(), [&](std::size_t i) {
       if (progress.cancelled()) return;
       LineBundle& bundle = bundles.local();
-      trace_lines(e.surface, projection[batch[i]], bundle);
+      trace_lines(e.surface, projection[batch[i]], bundle, LinesKept::met);
       collector.collect(bundle, found[i]);
       found[i].outside = outside_focus(e.surface, projection[batch[i]]);
     });

@@ -1,12 +1,16 @@
 // Physics at the door, for scenes from files and from memory alike.
+#include <algorithm>
 #include <cmath>
 #include <set>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include <sunfleck/core/error.hpp>
 #include <sunfleck/core/utf8.hpp>
 #include <sunfleck/scene/build.hpp>
+#include <sunfleck/scene/extent.hpp>
 
 #include "scene/check_devices.hpp"
 #include "scene/check_reach.hpp"
@@ -32,6 +36,7 @@ class Check {
     check_reach(scene_);
     check_lamps(scene_);
     check_sensors(scene_);
+    check_extent(scene_);
   }
 
  private:
@@ -221,16 +226,21 @@ class Check {
   void group_depth() const {
     constexpr int deepest = 1000;
     std::vector<int> height(scene_.groups.size(), 1);
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> inside;  // group, and a group that it holds
+    for (std::uint32_t g = 0; g < scene_.groups.size(); ++g)
+      for (const auto& member : scene_.groups[g].members)
+        if (member.is_group) inside.emplace_back(g, member.index);
+    std::sort(inside.begin(), inside.end());
+    inside.erase(std::unique(inside.begin(), inside.end()), inside.end());
     for (bool changed = true; changed;) {
       changed = false;
-      for (std::size_t g = 0; g < scene_.groups.size(); ++g)
-        for (const auto& member : scene_.groups[g].members)
-          if (member.is_group && height[g] <= height[member.index]) {
-            height[g] = height[member.index] + 1;
-            changed = true;
-            if (height[g] > deepest)
-              fail(fmt::format("group[{}]", g), fmt::format("more than {} groups inside each other", deepest), "fewer levels");
-          }
+      for (const auto& [outer, inner] : inside)
+        if (height[outer] <= height[inner]) {
+          height[outer] = height[inner] + 1;
+          changed = true;
+          if (height[outer] > deepest)
+            fail(fmt::format("group[{}]", outer), fmt::format("more than {} groups inside each other", deepest), "fewer levels");
+        }
     }
   }
 

@@ -82,9 +82,10 @@ struct CopyRays::Impl {
     const Box b = box_of(s, scene.copies[c].map);
     const auto low_x = std::ceil((cell.x_low - b.high.x) / cell.width()), high_x = std::floor((cell.x_high - b.low.x) / cell.width());
     const auto low_y = std::ceil((cell.y_low - b.high.y) / cell.depth()), high_y = std::floor((cell.y_high - b.low.y) / cell.depth());
-    if ((high_x - low_x + 1) * (high_y - low_y + 1) > 1e6)
-      throw InputError("domain.periodic", "a plant that reaches over more than 10^6 cells",
-                       "a cell of about the plants' size, all in metres");
+    const double most = 4096 + 64.0 * static_cast<double>(scene.copies.size());
+    if (static_cast<double>(instance_copy.size()) + (high_x - low_x + 1) * (high_y - low_y + 1) > most)
+      throw InputError("domain.periodic", fmt::format("plants that reach over more than {:.0f} cells", most),
+                       "a cell of about the plants' size, all in metres, or method clustering, flat, direct or reference");
     for (double y = low_y; y <= high_y; ++y)
       for (double x = low_x; x <= high_x; ++x) add_instance(c, {x * cell.width(), y * cell.depth(), 0.0});
   }

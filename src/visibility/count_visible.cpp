@@ -93,8 +93,9 @@ void count_visible(const Surface& surface, const Projection& projection, bool fr
   } else {
     const StripLists lists = strips_of(surface, projection, strip_rows, strips);
     for (int i = 0; i < strips; ++i)
-      count_strip(surface, projection, from_below, lists.triangle.data() + lists.start[i], lists.start[i + 1] - lists.start[i],
-                  i * strip_rows, std::min(projection.rows, (i + 1) * strip_rows), buffer, counts);
+      if (lists.start[i] < lists.start[i + 1])  // else there is nothing to see
+        count_strip(surface, projection, from_below, lists.triangle.data() + lists.start[i], lists.start[i + 1] - lists.start[i],
+                    i * strip_rows, std::min(projection.rows, (i + 1) * strip_rows), buffer, counts);
   }
   for (const auto& o : outside_focus(surface, projection)) {
     counts.all[o.cell] += o.lines;

@@ -5,8 +5,10 @@
 #include <cmath>
 #include <numbers>
 
+#include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
+#include <sunfleck/core/error.hpp>
 #include <sunfleck/core/sampling.hpp>
 #include <sunfleck/visibility/projection.hpp>
 
@@ -177,6 +179,10 @@ class LitCellsCounter {
     for (const auto& p : placed_) {
       const double x0 = std::floor(p.low_x / columns_), x1 = std::floor(p.high_x / columns_);
       const double y0 = std::floor(p.low_y / rows_), y1 = std::floor(p.high_y / rows_);
+      const double most = 2e6 + 64.0 * static_cast<double>(placed_.size());
+      if (!(static_cast<double>(all.size()) + (x1 - x0 + 1) * (y1 - y0 + 1) < most))
+        throw InputError("domain.periodic", fmt::format("shadows of the sun that reach over more than {:.0f} cells", most),
+                         "a cell of about the plants' size, all in metres, and a sun not as low");
       for (double y = y0; y <= y1; ++y)
         for (double x = x0; x <= x1; ++x) {
           all.push_back(p);

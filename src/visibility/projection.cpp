@@ -3,6 +3,9 @@
 #include <cmath>
 #include <numbers>
 
+#include <fmt/format.h>
+
+#include <sunfleck/core/error.hpp>
 #include <sunfleck/core/sampling.hpp>
 
 namespace sunfleck {
@@ -11,6 +14,15 @@ namespace {
 
 constexpr double golden_ratio_fraction = 0.6180339887498949;
 constexpr double fewest_periodic_lines = 1024.0;  ///< towards the zenith
+constexpr double most_layers = 64.0;              ///< of surfaces over the cell, for which so many lines are affordable
+
+/// Fewer where surfaces lie over the cell in very many layers (a plant a hundred cells wide): each line meets them all.
+double fewest_lines(const Surface& surface, const PeriodicCell& cell) {
+  double area = 0;
+  for (std::size_t t = 0; t < surface.size(); ++t)
+    if (surface.split[t] > 0) area += static_cast<double>(surface.cell_area[t]) * (surface.first_cell[t + 1] - surface.first_cell[t]);
+  return fewest_periodic_lines / std::max(1.0, area / (most_layers * cell.area()));
+}
 
 Projection periodic_projection(const Surface& surface, const Vec3& d, double pitch, double shift_x, double shift_y) {
   const PeriodicCell& cell = *surface.periodic;
@@ -19,7 +31,9 @@ Projection periodic_projection(const Surface& surface, const Vec3& d, double pit
   p.wraps = true;
   // as many lines per perpendicular area in every direction: a horizontal pixel stands for its area times cos(zenith). Links count
   // lines of all directions alike, so small cells get finer grids, whose sizes round less.
-  const double wanted = std::max(cell.area() / (pitch * pitch), fewest_periodic_lines) * d.z;
+  double lines = cell.area() / (pitch * pitch);
+  if (lines < fewest_periodic_lines) lines = std::max(lines, fewest_lines(surface, cell));
+  const double wanted = std::max(1.0, lines * d.z);
   const auto middle = static_cast<int>(std::lround(std::sqrt(wanted * cell.width() / cell.depth())));
   double least = 1e30;
   for (int columns = std::max(1, middle - middle / 8), last = std::max(1, middle + middle / 8); columns <= last; ++columns) {
@@ -49,6 +63,11 @@ Projection finite_projection(const Surface& surface, const Vec3& d, double pitch
   const Vec3 x = c * u + s * v, y = c * v - s * u;
   const Vec3 half = 0.5 * surface.focus.size(), centre = surface.focus.empty() ? Vec3{0.0} : surface.focus.centre();
   const double reach_x = glm::dot(glm::abs(x), half), reach_y = glm::dot(glm::abs(y), half);
+  constexpr double most = 1e9;
+  if (!(2.0 * std::max(reach_x, reach_y) < most * pitch))
+    throw InputError("scene",
+                     fmt::format("{:.4g} m from end to end, crossed by lines {:.4g} m apart", 2.0 * std::max(reach_x, reach_y), pitch),
+                     "plants that stand within 10^9 such distances of each other");
   p.columns = static_cast<int>(std::ceil(2.0 * reach_x / pitch)) + 2;
   p.rows = static_cast<int>(std::ceil(2.0 * reach_y / pitch)) + 2;
   p.x_row = x / pitch;

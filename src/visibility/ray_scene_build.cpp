@@ -53,6 +53,21 @@ void check_reach(const Box& b, double width, double depth) {
     throw InputError("domain.periodic", "facets more than 10^9 cells away", "plants near a cell of about their size, all in metres");
 }
 
+/// Images that are told apart where a facet lies in one plane with images of its own: so many next to each other along x and along y.
+constexpr std::int32_t most_stacked_images = 8;
+
+/// Of the images that reach into the cell, those in which stacks are looked for: all, or as many in their middle.
+std::pair<CellImage, CellImage> images_for_stacks(std::pair<CellImage, CellImage> images) {
+  const auto shorten = [](std::int32_t& low, std::int32_t& high) {
+    if (high - low < most_stacked_images) return;
+    low += (high - low + 1 - most_stacked_images) / 2;
+    high = low + most_stacked_images - 1;
+  };
+  shorten(images.first.x, images.second.x);
+  shorten(images.first.y, images.second.y);
+  return images;
+}
+
 /// The images whose box (local units) reaches into the cell: [low, high].
 std::pair<CellImage, CellImage> images_in_cell(const Box& b, double width, double depth) {
   check_reach(b, width, depth);
@@ -135,7 +150,7 @@ void RayScene::Impl::place() {
 }
 
 void RayScene::Impl::list_primitives() {
-  const double most = std::min(1e7 + 32.0 * own_count, 4e9);  // a cell much smaller than the leaves is a mistake of units
+  const double most = std::min(2e6 + 32.0 * own_count, 4e9);  // a cell much smaller than the leaves is a mistake of units
   for (std::uint32_t f = 0; f < own_count; ++f) {
     if (!has_area(f)) continue;
     std::pair<CellImage, CellImage> images;
@@ -158,7 +173,7 @@ void RayScene::Impl::list_primitives() {
 }
 
 void RayScene::Impl::list_instances() {
-  const double most = 1e6 + 64.0 * own_copy;
+  const double most = 2e5 + 64.0 * own_copy;
   for (std::uint32_t c = 0; rows && c < own_copy; ++c) {
     if (plant_of(c).box.empty()) continue;
     std::pair<CellImage, CellImage> images;
@@ -188,12 +203,23 @@ Triangle RayScene::Impl::primitive_corners(std::size_t primitive) const {
 
 void RayScene::Impl::find_stacks() {
   if (flat) {
-    std::vector<StackCandidate> candidates(facet_of.size());
-    for (std::uint32_t p = 0; p < facet_of.size(); ++p) candidates[p] = {primitive_corners(p), p, facet_of[p] >= flat->plant_facets};
+    std::vector<StackCandidate> candidates;
+    std::vector<std::uint32_t> primitive_of;
+    for (std::uint32_t begin = 0, end = 0; begin < facet_of.size(); begin = end) {
+      while (end < facet_of.size() && facet_of[end] == facet_of[begin]) ++end;
+      const auto [low, high] = periodic ? images_for_stacks({image_of[begin], image_of[end - 1]}) : std::pair<CellImage, CellImage>{};
+      for (std::uint32_t p = begin; p < end; ++p) {
+        const CellImage image = periodic ? image_of[p] : CellImage{};
+        if (image.x < low.x || image.x > high.x || image.y < low.y || image.y > high.y) continue;
+        candidates.push_back({primitive_corners(p), p, facet_of[p] >= flat->plant_facets});
+        primitive_of.push_back(p);
+      }
+    }
     for (const auto& pair : find_stacked(candidates)) {
-      const CellImage relative = periodic ? image_of[pair.first] - image_of[pair.second] : CellImage{};
-      add_stacked(stacks, facet_of[pair.first], candidates[pair.first].corners, facet_of[pair.second], candidates[pair.second].corners,
-                  relative, pair.height, pairs);
+      const auto first = primitive_of[pair.first], second = primitive_of[pair.second];
+      const CellImage relative = periodic ? image_of[first] - image_of[second] : CellImage{};
+      add_stacked(stacks, facet_of[first], candidates[pair.first].corners, facet_of[second], candidates[pair.second].corners, relative,
+                  pair.height, pairs);
     }
     pairs /= 2;
     return;

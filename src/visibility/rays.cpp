@@ -16,7 +16,8 @@ using namespace rayscene;
 
 namespace {
 
-constexpr double least_slope = 1e-6;  // of rays in periodic scenes
+constexpr double least_slope = 1e-6;           // of rays in periodic scenes
+constexpr std::uint64_t most_cells = 1000000;  // that a ray is followed through: what has met nothing by then never will
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 }  // namespace
@@ -148,7 +149,8 @@ RayHit RayScene::Impl::trace(Vec3 p, Vec3 d, CopyFacet start, double range) cons
   const auto cell_at = [](double x, double period) { return std::floor(x / period); };
   const Vec3 entry = p + begin * d;
   double cx = cell_at(entry.x, width), cy = cell_at(entry.y, depth);
-  for (double t = begin; t <= end;) {
+  std::uint64_t cells = 0;
+  for (double t = begin; t <= end && cells < most_cells; ++cells) {
     const double out_x = d.x > 0.0 ? ((cx + 1.0) * width - p.x) / d.x : d.x < 0.0 ? (cx * width - p.x) / d.x : infinity;
     const double out_y = d.y > 0.0 ? ((cy + 1.0) * depth - p.y) / d.y : d.y < 0.0 ? (cy * depth - p.y) / d.y : infinity;
     const double out = std::min({out_x, out_y, end});

@@ -4,6 +4,10 @@
 #include <cmath>
 #include <numeric>
 
+#include <fmt/format.h>
+
+#include <sunfleck/core/error.hpp>
+
 namespace sunfleck {
 
 namespace {
@@ -11,6 +15,8 @@ namespace {
 constexpr double plane_tolerance = 4e-7;    // six times the spacing of floats at 1
 constexpr double normal_tolerance = 1e-6;   // [rad]
 constexpr double overlap_tolerance = 1e-7;  // neighbours that share an edge do not overlap
+
+constexpr std::size_t most_pairs = 20'000'000;
 
 using Vec2 = glm::dvec2;
 
@@ -115,6 +121,9 @@ class Finder {
     }
     if (std::max(std::abs(low), std::abs(high)) > plane_tolerance || !overlap(a.corners, b.corners, n)) return;
     const double height = 0.5 * (low + high);
+    if (pairs_.size() == most_pairs)
+      throw InputError("facets", fmt::format("more than {} pairs that lie on each other in one plane", most_pairs),
+                       "surfaces that coincide in few places (is a plant placed many times on one spot, or is its `unit` wrong?)");
     pairs_.push_back({std::min(f.row, g.row), std::max(f.row, g.row), std::abs(height) < 1e-12 ? 0.0 : height});
   }
 

@@ -261,7 +261,7 @@ TEST_CASE("periodic: a ground that fills the cell has no gaps, on borders neithe
 TEST_CASE("periodic: a leaf over very many cells is refused, with a reason") {
   const auto scene = facets({flat(0, 0, 0, 1e5)}, PeriodicCell{0, 0, 1, 1});
   CHECK_THROWS_WITH(RayScene(scene),
-                    "domain.periodic: found facets that reach over more than 10000032 cells; expected a cell of about the plants' size, "
+                    "domain.periodic: found facets that reach over more than 2000032 cells; expected a cell of about the plants' size, "
                     "all in metres");
   const auto far = facets({flat(0, 1e12)}, PeriodicCell{0, 0, 1, 1});
   CHECK_THROWS_AS(RayScene(far), InputError);

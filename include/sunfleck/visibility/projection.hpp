@@ -51,7 +51,7 @@ struct LineBundle {
     std::uint32_t cell;
     float depth;
   };
-  std::vector<std::uint32_t> start;  ///< [columns * rows + 1]
+  std::vector<std::uint32_t> start;  ///< [lines + 1], lines row by row
   /// Upward side of each fragment, from the lowest to the highest: 2 * cell + (0 if the front faces the direction, else 1).
   /// `side ^ 1` is the downward side.
   std::vector<std::uint32_t> side;
@@ -62,9 +62,16 @@ struct LineBundle {
   std::size_t bytes() const { return bytes_of(start) + bytes_of(side) + bytes_of(depth) + bytes_of(found) + bytes_of(sorted); }
 };
 
+/// Which lines have a place in LineBundle::start.
+enum class LinesKept {
+  all,  ///< columns * rows
+  met   ///< where more than 2^24 meet nothing, only those that meet something: scenes of few plants far apart cost no more than these
+};
+
 /// Traces all lines. Coincident fragments (closer than the surface's depth tolerance) are ordered so that, for facets i < j, j
-/// lies on the front side of i, the same from every direction. Single-threaded, reuses the bundle's memory.
-void trace_lines(const Surface& surface, const Projection& projection, LineBundle& bundle);
+/// lies on the front side of i, the same from every direction. Single-threaded, reuses the bundle's memory. Throws InputError where the
+/// projection has more than 2^32 lines.
+void trace_lines(const Surface& surface, const Projection& projection, LineBundle& bundle, LinesKept lines = LinesKept::all);
 
 /// Area, in lines, of the cells of flat ground that lie outside the focus, where lines would meet nothing else; empty in periodic scenes.
 struct OutsideArea {
