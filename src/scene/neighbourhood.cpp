@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <optional>
 #include <utility>
 
@@ -16,6 +17,8 @@ constexpr double near_sizes = 2.0;    // plant sizes: a neighbour farther away t
 constexpr double far_heights = 50.0;  // the sky below 1.1 degrees
 constexpr double lowest_sun = 0.09;   // 5 degrees: shadows are not followed farther
 constexpr std::size_t most_far = 50'000;
+constexpr std::size_t most_compared = 4096;  // boxes, each with all others
+constexpr std::size_t most_fields = 256;
 constexpr std::uint64_t small_scene = 2'000'000;  // facets
 
 Box moved(const Box& box, const Affine& map) {
@@ -113,6 +116,7 @@ class Neighbourhood {
 
   /// Boxes that stand within a plant's size of each other become one, so that there are few to ask.
   void join_boxes() {
+    if (opened_.size() > most_compared) join_in_fields();
     std::vector<Box> joined;
     for (const auto& box : opened_) {
       auto best = joined.end();
@@ -127,6 +131,20 @@ class Neighbourhood {
         best->add(box);
     }
     opened_ = std::move(joined);
+  }
+
+  /// Very many: those with their middles in one field of a grid, as fine as leaves few of them.
+  void join_in_fields() {
+    for (double field = 4 * size_; opened_.size() > most_fields; field *= 2) {
+      if (!(field > 0)) return;
+      std::map<std::pair<double, double>, Box> fields;
+      for (const auto& box : opened_) {
+        const Vec3 middle = box.centre() / field;
+        fields[{std::floor(middle.x), std::floor(middle.y)}].add(box);
+      }
+      opened_.clear();
+      for (const auto& [place, box] : fields) opened_.push_back(box);
+    }
   }
 
   bool is_near(const Box& box) const {
