@@ -3,8 +3,8 @@
     check_export.py RESULT.h5 FILE...
 
 A reader that is not installed is skipped with a line that says so. Exit code 1 if anything differs. Formats and readers:
-.vtkhdf VTK and h5py; .ply VTK and numpy; .obj VTK and meshio; .xdmf h5py along every reference, and VTK where it has its
-XDMF reader (that of python3-paraview does, that of python3-vtk9 does not);
+.vtkhdf VTK and h5py; .ply VTK and numpy; .obj VTK and meshio; .xdmf h5py along every reference, and VTK too where it was
+built with its XDMF reader (PyPI's and ParaView's are, Debian's python3-vtk9 is not);
 .glb VTK, and json with struct; .csv (of organs, groups, sensors) the csv module; .opf the xml module. An .opf must be of the copy
 that its name tells: shrub_1.opf is shrub[1].
 """
@@ -13,6 +13,7 @@ import json
 import struct
 import sys
 import xml.etree.ElementTree as xml
+from importlib.util import find_spec
 from pathlib import Path
 
 import h5py
@@ -113,8 +114,8 @@ def single(e):
 
 
 def read_vtkhdf(e, path):
-    if module("vtkmodules.all"):
-        from vtkmodules.all import vtkHDFReader
+    if module("vtkmodules.vtkIOHDF"):
+        from vtkmodules.vtkIOHDF import vtkHDFReader
         reader = vtkHDFReader()
         reader.SetFileName(path)
         corners, cells, _ = vtk_grid(reader)
@@ -152,8 +153,8 @@ def read_ply(e, path):
     same(".ply organ (numpy)", faces["organ"].astype(np.uint32), e.organ)
     same(".ply area (numpy)", faces["area"], e.area)
     print("read by numpy:", path)
-    if module("vtkmodules.all"):
-        from vtkmodules.all import vtkPLYReader
+    if module("vtkmodules.vtkIOPLY"):
+        from vtkmodules.vtkIOPLY import vtkPLYReader
         reader = vtkPLYReader()
         reader.SetFileName(path)
         corners, cells, _ = vtk_grid(reader)
@@ -163,8 +164,8 @@ def read_ply(e, path):
 
 
 def read_obj(e, path):
-    if module("vtkmodules.all"):
-        from vtkmodules.all import vtkOBJReader
+    if module("vtkmodules.vtkIOGeometry"):
+        from vtkmodules.vtkIOGeometry import vtkOBJReader
         reader = vtkOBJReader()
         reader.SetFileName(path)
         corners, _, _ = vtk_grid(reader)
@@ -213,7 +214,7 @@ def read_xdmf(e, path):
         same(".xdmf organ", np.concatenate(found["organ"]), e.organ)
         check(".xdmf colour", np.concatenate(found["colour"]).shape == (len(e.area), 3))
     print("read by h5py:", path)
-    if module("vtkmodules.vtkIOXdmf2"):
+    if find_spec("vtkmodules") and find_spec("vtkmodules.vtkIOXdmf2"):
         from vtkmodules.vtkIOXdmf2 import vtkXdmfReader
         from vtkmodules.vtkFiltersCore import vtkAppendFilter
         reader = vtkXdmfReader()
@@ -311,8 +312,8 @@ def read_glb(e, path):
         area = lambda c: np.linalg.norm(np.cross(c[:, 1] - c[:, 0], c[:, 2] - c[:, 0]), axis=1).sum() / 2
         close(".glb area", area(found), area(e.corners), 1e-5 * area(e.corners))
     print("read by json and struct:", path)
-    if module("vtkmodules.all") and "extensionsRequired" not in gltf:
-        from vtkmodules.all import vtkGLTFReader
+    if module("vtkmodules.vtkIOGeometry") and "extensionsRequired" not in gltf:
+        from vtkmodules.vtkIOGeometry import vtkGLTFReader
         reader = vtkGLTFReader()
         reader.SetFileName(path)
         reader.Update()
