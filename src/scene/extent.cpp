@@ -13,7 +13,6 @@ namespace sunfleck {
 
 namespace {
 
-constexpr double farthest = 1e15;         // [m] whose squares and cubes single and double precision still hold
 constexpr double most_sizes = 4e6;        // single precision has 24 bits: a copy's corners stand a quarter of its size wrong there
 constexpr double most_scene_sizes = 1e6;  // of a sensor from the middle
 constexpr double most_heights = 1e4;      // cells: a ray crosses as many on its way up, and more where it is low
@@ -57,13 +56,10 @@ class Extents {
 
   void check() {
     Contents all;
-    each_placement([&](const Contents& c, const std::string& name, std::size_t entry, std::size_t i) {
-      within_reach(c.box, name, entry, i);
-      all.add(c);
-    });
+    each_placement([&](const Contents& c, const std::string&, std::size_t, std::size_t) { all.add(c); });
     Box everything = all.box;
     if (scene_.ground) everything.add(ground_box(*scene_.ground));
-    devices(everything);
+    sensors(everything);
     if (everything.empty()) return;
     const Vec3 middle = everything.centre();
     if (distance(all.box, middle) > most_sizes * all.smallest)  // perhaps: only then every copy is looked at
@@ -157,20 +153,7 @@ class Extents {
     return scales_[p];
   }
 
-  void within_reach(const Box& box, const std::string& name, std::size_t entry, std::size_t i) const {
-    if (box.empty()) return;
-    for (const auto& corner : {box.low, box.high})
-      for (int axis = 0; axis < 3; ++axis)
-        if (!(std::fabs(corner[axis]) <= farthest))
-          fail(key_of(name, entry, i), fmt::format("a copy that reaches to {:.4g} m", corner[axis]),
-               fmt::format("coordinates within {:g} m", farthest));
-  }
-
-  void within_reach(double v, const std::string& key) const {
-    if (!(std::fabs(v) <= farthest)) fail(key, fmt::format("{:.4g} m", v), fmt::format("coordinates within {:g} m", farthest));
-  }
-
-  Box ground_box(const Ground& ground) const {
+  static Box ground_box(const Ground& ground) {
     Box box;
     if (ground.mesh) {
       for (const auto& t : ground.mesh->triangles)
@@ -179,22 +162,11 @@ class Extents {
       const Vec3 middle{ground.centre[0], ground.centre[1], ground.height}, half{0.5 * ground.size[0], 0.5 * ground.size[1], 0.0};
       box = {middle - half, middle + half};
     }
-    for (const auto& corner : {box.low, box.high})
-      for (int axis = 0; axis < 3; ++axis)
-        if (!box.empty()) within_reach(corner[axis], "ground");
     return box;
   }
 
-  /// Lamps anywhere; sensors where rays from them can still be aimed at the scene.
-  void devices(const Box& all) const {
-    for (std::size_t l = 0; l < scene_.lamps.size(); ++l)
-      for (std::size_t i = 0; i < scene_.lamps[l].placements.size(); ++i) {
-        const auto& map = scene_.lamps[l].placements[i].map;
-        const std::string key = key_of("lamp", l, i);
-        for (const auto& v : scene_.lamps[l].mesh.vertices)
-          for (int axis = 0; axis < 3; ++axis) within_reach(map.point(v)[axis], key);
-        for (int axis = 0; axis < 3; ++axis) within_reach(map.translation[axis], key);
-      }
+  /// Where rays from them can still be aimed at the scene.
+  void sensors(const Box& all) const {
     for (std::size_t i = 0; i < scene_.sensors.size(); ++i) {
       const auto& sensor = scene_.sensors[i];
       const std::string key = fmt::format("sensor[{}]", i);
@@ -224,7 +196,6 @@ class Extents {
   }
 
   void near_scene(double v, int axis, const Box& all, const std::string& key) const {
-    within_reach(v, key);
     double size = all.empty() ? 0.0 : glm::length(all.size()), middle = all.empty() ? 0.0 : all.centre()[axis];
     if (scene_.periodic) size = std::max({size, scene_.periodic->width(), scene_.periodic->depth()});
     if (size > 0 && std::fabs(v - middle) > most_scene_sizes * size)

@@ -47,8 +47,8 @@ Scene with_sensor(const SensorGrid& grid) {
 
 TEST_CASE("copies that stand where single precision cannot tell their corners apart are refused by name", "[scene]") {
   CHECK(refusal(leaves(1.0, {placed({}), placed({{0, 0, 1e5}})})).empty());
-  CHECK(refusal(leaves(1.0, {placed({}), placed({{0, 0, 1e9}})})) ==
-        "plant[0].place[0]: found a plant of 1 m that stands 5e+08 m from the middle of the scene; expected plants at most 4000000 times "
+  CHECK(refusal(leaves(1.0, {placed({}), placed({{0, 0, 9e7}})})) ==
+        "plant[0].place[0]: found a plant of 1 m that stands 4.5e+07 m from the middle of the scene; expected plants at most 4000000 times "
         "their size from it: single precision tells their corners apart no farther");
   // far from the origin, but near each other
   CHECK(refusal(leaves(1.0, {placed({{5e6, 4e5, 0}}), placed({{5e6 + 10, 4e5, 0}})})).empty());
@@ -56,25 +56,15 @@ TEST_CASE("copies that stand where single precision cannot tell their corners ap
   CHECK(refusal(leaves(1.0, {placed({{0, 0, 0}, 0, 1e-7}), placed({{10, 0, 0}})})).find("plant[0].place[0]: found a plant of 1e-07 m") ==
         0);
   Scene grouped = leaves(1.0, {});
-  grouped.groups.push_back({"pair", {{false, 0, placed({})}, {false, 0, placed({{0, 0, 1e9}})}}, {placed({})}});
+  grouped.groups.push_back({"pair", {{false, 0, placed({})}, {false, 0, placed({{0, 0, 9e7}})}}, {placed({})}});
   CHECK(refusal(grouped).find("group[0].place[0]: found a plant of 1 m") == 0);
-}
-
-TEST_CASE("coordinates beyond all bounds are refused", "[scene]") {
-  CHECK(refusal(leaves(1.0, {placed({{1e30, 0, 0}})})) ==
-        "plant[0].place[0]: found a copy that reaches to 1e+30 m; expected coordinates within 1e+15 m");
-  CHECK(refusal(leaves(1e300, {placed({})})).find("plant[0].place[0]: found a copy that reaches to 1e+300 m") == 0);
-  Scene scene = leaves(1.0, {placed({})});
-  scene.ground = flat_ground({1e20, 1}, {0, 0}, {1, 1}, {0.1});
-  CHECK(refusal(scene) == "ground: found -5e+19 m; expected coordinates within 1e+15 m");
 }
 
 TEST_CASE("sensors stand where rays from them can be aimed at the scene", "[scene]") {
   CHECK(refusal(with_sensor({-100.0, {5, 5}, {}, {}})).empty());
-  CHECK(refusal(with_sensor({-1e308, {5, 5}, {}, {}})) == "sensor[0].grid.z: found -1e+308 m; expected coordinates within 1e+15 m");
-  CHECK(refusal(with_sensor({0.5, {5, 5}, std::array{1e14, 1e14}, {}})) ==
-        "sensor[0].grid.size: found 5e+13 m, in a scene of 1.414 m; expected at most 1000000 times the scene's size from its middle");
-  CHECK(refusal(with_sensor({0.5, {5, 5}, {}, std::array{0.0, 1e9}})).find("sensor[0].grid.center: found 1e+09 m") == 0);
+  CHECK(refusal(with_sensor({0.5, {5, 5}, std::array{1e8, 1e8}, {}})) ==
+        "sensor[0].grid.size: found 5e+07 m, in a scene of 1.414 m; expected at most 1000000 times the scene's size from its middle");
+  CHECK(refusal(with_sensor({0.5, {5, 5}, {}, std::array{0.0, 9e7}})).find("sensor[0].grid.center: found 9e+07 m") == 0);
 }
 
 TEST_CASE("plants out of proportion with their periodic cell are noted, and refused where nothing could be computed", "[scene]") {

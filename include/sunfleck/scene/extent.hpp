@@ -8,7 +8,7 @@
 
 namespace sunfleck {
 
-/// Throws InputError where coordinates leave 10^15 m, a copy stands 4 10^6 of its sizes from the middle of the scene (single precision
+/// Throws InputError where a copy stands 4 10^6 of its sizes from the middle of the scene (single precision
 /// cannot tell its corners apart there), a sensor stands 10^6 scene sizes from it, or a periodic cell is out of proportion: plants of more
 /// than 100,000 times its area, a scene of more than 10,000 times its width in height. Indices of plants and groups must be in range.
 void check_extent(const Scene& scene);
