@@ -88,8 +88,6 @@ class PlantReader {
     std::int64_t version = 0;
     if (!space || H5Sget_simple_extent_npoints(space.get()) != 1 || H5Aread(attribute.get(), H5T_NATIVE_INT64, &version) < 0)
       fail("format_version", "no number", fmt::format("{}", format_version));
-    if (version > format_version)
-      fail("format_version", fmt::format("{}", version), fmt::format("{}: this program is older than the file", format_version));
     if (version != format_version) fail("format_version", fmt::format("{}", version), fmt::format("{}", format_version));
   }
 
