@@ -141,8 +141,8 @@ class ObjReader {
     return at->second;
   }
 
-  /// Notes the material libraries that a line names, which no output may replace. Whether one of them lies elsewhere: a name may have blanks,
-  /// or several be separated by them, so that a word which leaves the folder tells.
+  /// Notes the material libraries that a line names, which no output may replace. Whether one of them lies elsewhere: a name may have
+  /// blanks, or several be separated by them, so that a word which leaves the folder tells.
   bool outside(std::string_view names) const {
     bool elsewhere = false;
     Words words(names);
