@@ -5,7 +5,9 @@ namespace sunfleck {
 
 void define_generate(CLI::App& verb, GenerateOptions& o) {
   verb.add_option("SPECIES", o.species, "species file, TOML, such as those in plants/")->required()->type_name("");
-  verb.add_option("-o,--output", o.output, "plant to write: .h5 keeps its hierarchy of structures, .obj its organs as groups")
+  verb.add_option("-o,--output", o.output,
+                  "plant to write: .h5 keeps its hierarchy of structures, .obj its organs as groups, with a .mtl beside it that must not "
+                  "be someone else's")
       ->required()
       ->type_name("PLANT.h5|.obj");
   verb.add_option("--age", o.age, "age of the plant, in the unit that the species file states (default the file's own)")
@@ -22,7 +24,11 @@ void define_import(CLI::App& verb, ImportOptions& o) {
   verb.add_option("FILE", c.files, "one .ops (AMAP); or one .can with .opt (a band each), .light and .8 (CARIBU)")
       ->required()
       ->type_name("");
-  verb.add_option("-o,--output", c.output, "scene file to write; it names the files where they are")->required()->type_name("SCENE.toml");
+  verb.add_option("-o,--output", c.output,
+                  "scene file to write; it names the files where they are. One that is there is replaced only if import wrote it and "
+                  "nobody has changed it")
+      ->required()
+      ->type_name("SCENE.toml");
   verb.add_option("--unit", c.unit, "length unit of .can and .8 (default m), or of an .ops' plants (default cm): m, cm, mm, inch, foot")
       ->type_name("UNIT");
   verb.add_flag("--degrees", c.degrees, ".ops only: its angles are degrees (default radians)");
