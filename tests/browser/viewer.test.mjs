@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import fs from "node:fs";
 import path from "node:path";
 import { after, before, test } from "node:test";
-import { closePage, download, folder, look, openPage, settled, shoot, shots, startBrowser, startViewer, text, unlike } from "./browser.mjs";
+import { closePage, download, folder, look, openPage, patience, settled, shoot, shots, startBrowser, startViewer, text, unlike } from "./browser.mjs";
 
 const first = "first.h5", second = "second.h5";
 let browser, viewer, url;
@@ -326,6 +326,7 @@ test("two results side by side, and their difference", async () => {
 
 test("what is to be known before a result is believed is said", async () => {
   const context = await browser.newContext(), page = await context.newPage();
+  page.setDefaultTimeout(patience);
   await page.route("**/api/describe", async (route) => {
     const answer = await route.fetch(), about = await answer.json();
     about.results[0].status = "inaccurate";
