@@ -8,6 +8,7 @@
 #include <sunfleck/core/error.hpp>
 #include <sunfleck/core/names.hpp>
 #include <sunfleck/instantiation/plan.hpp>
+#include <sunfleck/light/wide_sun.hpp>
 #include <sunfleck/policy/policy_toml.hpp>
 #include <sunfleck/scene/extent.hpp>
 
@@ -64,6 +65,8 @@ MethodChoice choose_method(const std::optional<std::string>& method, const std::
 MethodReason default_method(const Scene& scene, Quality quality, Progress& progress) {
   if (!scene.lamps.empty()) return {"clustering", "instantiation knows no lamps"};
   if (!scene.sensors.empty()) return {"clustering", "instantiation knows no sensors"};
+  for (const auto& state : scene.states)
+    if (state.sun && state.sun->angular_diameter_deg > widest_narrow_sun_deg) return {"clustering", "instantiation knows no wide sun"};
   if (!repeats(scene)) return {"clustering", "too little repeats for instantiation to pay"};
   if (const double covered = most_cells_covered(scene); covered > much_covered)
     return {"clustering",

@@ -105,6 +105,11 @@ void incoming(const SceneLight& s, const Batch& b, const LineOperator& op, const
         const float* from = nullptr;
         if (end.is_sky()) {
           if (sky) from = radiance.data();
+        } else if (end.is_mirrored()) {
+          if (light)
+            for (std::size_t c = 0; c < b.columns; ++c)
+              sum[c] += s.scene.ground->optics.reflectance_front[(b.first_column + c) % s.bands] *
+                        light->fields[(s.field_start[end.target] + (end.field & ~RayEnd::mirrored_bit)) * s.columns + b.first_column + c];
         } else if (light) {
           from = end.is_ground() ? light->ground.data() + (2 * std::size_t{end.facet()} + end.field) * s.columns + b.first_column
                                  : light->fields.data() + (s.field_start[end.target] + end.field) * s.columns + b.first_column;

@@ -65,7 +65,7 @@ GroundView view_from_ground(const Scene& scene, const std::vector<Triangle>& gro
           const double r2 = sobol_owen(k, 2, key), angle = 2 * std::numbers::pi * sobol_owen(k, 3, key), r = std::sqrt(r2);
           const Vec3 d = glm::normalize(r * std::cos(angle) * u + r * std::sin(angle) * v + std::sqrt(1 - r2) * up);
           auto& end = out.ends[out.first_end(side) + k];
-          end = around.look_from_ground(point(k, 0), d);
+          end = around.look_from_ground(point(k, 0) + around.ground_lift() * up, d);
           if (!end.is_sky()) continue;
           ++open;
           for (std::size_t s = 0; s < lights.skies.size(); ++s)
@@ -77,9 +77,10 @@ GroundView view_from_ground(const Scene& scene, const std::vector<Triangle>& gro
         const double cosine = glm::dot(normal, lights.suns[s]->direction);
         const std::size_t side = 2 * f + (cosine < 0 ? 1 : 0);
         if (!out.seen[side]) continue;
+        const Vec3 lift = (side & 1 ? -around.ground_lift() : around.ground_lift()) * normal;
         std::uint32_t lit = 0;
         const auto n = static_cast<std::uint32_t>(disc[s].size());
-        for (std::uint32_t k = 0; k < n; ++k) lit += around.hidden(point(k, 4), disc[s][k]) ? 0 : 1;
+        for (std::uint32_t k = 0; k < n; ++k) lit += around.hidden_from_ground(point(k, 4) + lift, disc[s][k]) ? 0 : 1;
         out.sunlit[s][side] = static_cast<float>(lit) / static_cast<float>(n);
         out.lit[s][side] = static_cast<float>(std::fabs(cosine)) * out.sunlit[s][side];
       }

@@ -44,14 +44,19 @@ std::uint32_t MemberSurroundings::near_facet(const Vec3& point) const {
   y = (y - std::floor(y)) * placed_.near_cells[1];
   const auto i = std::min(static_cast<std::uint32_t>(x), placed_.near_cells[0] - 1),
              j = std::min(static_cast<std::uint32_t>(y), placed_.near_cells[1] - 1);
-  const std::uint32_t triangle = 2 * (j * placed_.near_cells[0] + i) + (x - i < y - j ? 1 : 0),
-                      parts = members_.ground_split * members_.ground_split;
-  return triangle * parts + std::min(static_cast<std::uint32_t>((x - i) * parts), parts - 1);
+  const std::uint32_t triangle = 2 * (j * placed_.near_cells[0] + i) + (x - i < y - j ? 1 : 0), first = members_.ground_parts[triangle],
+                      parts = members_.ground_parts[triangle + 1] - first;
+  return first + std::min(static_cast<std::uint32_t>((x - i) * parts), parts - 1);
 }
 
 RayEnd MemberSurroundings::look(std::uint32_t m, const std::array<float, 3>& point, const Vec3& d) const {
   const auto& surface = members_.original_of(m).elements.surface;
   const Vec3 from = maps_[m].point(surface.origin + Vec3{point[0], point[1], point[2]});
+  if (const CopyHit under = rays_.first_ground(from, d, skip_); under.kind == CopyHit::Kind::ground) {  // it lies there
+    if (m >= members_.size()) return end_of(under, d);
+    const auto field = members_.original_of(m).coarse->field_at(Vec3{point[0], point[1], point[2]}, maps_[m].direction_back(d));
+    return {m, field | RayEnd::mirrored_bit};
+  }
   return end_of(rays_.first_hit(from, d, skip_), d);
 }
 
@@ -73,11 +78,11 @@ std::uint32_t MemberSurroundings::stands_between(std::uint32_t m, const std::arr
 }
 
 RayEnd MemberSurroundings::look_from_ground(const Vec3& point, const Vec3& d) const {
-  return end_of(rays_.first_hit(point, d, skip_), d);
+  return end_of(rays_.first_hit(point, d, 0.0), d);
 }
 
-bool MemberSurroundings::hidden(const Vec3& point, const Vec3& d) const {
-  return rays_.occluded(point, d, skip_, std::numeric_limits<double>::infinity());
+bool MemberSurroundings::hidden_from_ground(const Vec3& point, const Vec3& d) const {
+  return rays_.occluded(point, d, 0.0, std::numeric_limits<double>::infinity());
 }
 
 }  // namespace sunfleck

@@ -14,12 +14,15 @@ namespace sunfleck {
 
 /// Where a ray from a copy or the ground ends: in an outgoing field of a member, on a side of a facet of the ground, or in the sky.
 struct RayEnd {
-  static constexpr std::uint32_t sky = 0xffffffffu, ground_bit = 0x80000000u;
+  static constexpr std::uint32_t sky = 0xffffffffu, ground_bit = 0x80000000u, mirrored_bit = 0x80000000u;
   std::uint32_t target = sky;  ///< member; or ground_bit | facet
-  std::uint32_t field = 0;     ///< of the member; of the ground: 0 front, 1 back
+  /// Of the member; of the ground: 0 front, 1 back. With the mirrored_bit: of the member on the ground that looks down, which sees there
+  /// what it sends itself, times the ground's reflectance.
+  std::uint32_t field = 0;
 
   bool is_sky() const { return target == sky; }
   bool is_ground() const { return !is_sky() && (target & ground_bit); }
+  bool is_mirrored() const { return !is_sky() && (field & mirrored_bit); }
   std::uint32_t facet() const { return target & ~ground_bit; }
 };
 
@@ -35,10 +38,11 @@ class MemberSurroundings {
   /// inside its original; none = nothing, m = an image of itself.
   static constexpr std::uint32_t none = 0xffffffffu;
   std::uint32_t stands_between(std::uint32_t m, const std::array<float, 6>& segment) const;
-  /// From a world point of facet of the ground.
+  /// From a world point of a facet of the ground, lifted off the side that looks by ground_lift(): below what lies there.
   RayEnd look_from_ground(const Vec3& point, const Vec3& d) const;
-  /// Is the sun hidden from a world point?
-  bool hidden(const Vec3& point, const Vec3& d) const;
+  /// Is the sun hidden from such a point?
+  bool hidden_from_ground(const Vec3& point, const Vec3& d) const;
+  double ground_lift() const { return 0.5 * scene_.ground_gap; }  ///< [m]
   /// Rays no longer meet some members, or meet them again. Not while rays are asked.
   void set_hidden(const std::vector<std::uint32_t>& members, bool hidden) { rays_.set_hidden(members, hidden); }
   std::size_t bytes() const { return rays_.bytes(); }

@@ -11,6 +11,8 @@
 #include <sunfleck/plant/describe.hpp>
 #include <sunfleck/radiosity/interior.hpp>
 #include <sunfleck/scene/facets.hpp>
+#include <sunfleck/visibility/ground_gap.hpp>
+#include <sunfleck/visibility/ground_pieces.hpp>
 
 #include "instantiation/coincident.hpp"
 #include "instantiation/member_surroundings.hpp"
@@ -83,7 +85,7 @@ void OriginalLight::forget() {
 }
 
 std::size_t Members::bytes() const {
-  std::size_t total = bytes_of(maps) + bytes_of(copies.copies) + bytes_of(copies.ground);
+  std::size_t total = bytes_of(maps) + bytes_of(copies.copies) + bytes_of(copies.ground) + bytes_of(ground_parts);
   for (const auto& o : originals) total += o.bytes();
   for (const auto& piece : approximation.pieces) total += held_bytes(*piece.plant);
   return total;
@@ -91,31 +93,57 @@ std::size_t Members::bytes() const {
 
 namespace {
 
-/// Light on the ground varies over a tenth of a plant's size: larger facets are cut, as far as a few ten thousand parts go.
+/// Light on the ground varies over a tenth of a plant's size: larger facets are cut, those much larger where plants are near.
 void split_ground(const std::vector<Triangle>& ground, Members& out) {
+  constexpr double most_parts = 40'000.0, most_pieces = 10'000.0;
+  constexpr int most_split = 4;
   double plant = 0, facet = 0;
+  std::vector<Box> boxes;
   for (const auto& copy : out.copies.copies) {
-    const Vec3 size = out.copies.surfaces[copy.surface]->focus.size();
+    const auto& surface = *out.copies.surfaces[copy.surface];
+    const Vec3 size = surface.focus.size();
     plant += std::cbrt(std::fabs(glm::determinant(copy.map.linear))) * std::max({size.x, size.y, size.z});
+    boxes.push_back(copy_bounds(surface, copy.map));
   }
   for (const auto& t : ground) facet += std::sqrt(glm::length(area_vector(t)));
-  if (out.copies.copies.empty() || ground.empty() || !(plant > 0)) {
-    out.copies.ground = ground;
-    return;
-  }
   out.copies.ground.clear();
-  const double wanted = facet / static_cast<double>(ground.size()) / (0.1 * plant / static_cast<double>(out.copies.copies.size()));
-  const double affordable = std::sqrt(40'000.0 / static_cast<double>(ground.size()));
-  const int k = std::clamp(static_cast<int>(std::lround(std::min(wanted, affordable))), 1, 4);
-  out.ground_split = static_cast<std::uint32_t>(k);
+  out.ground_parts = {0};
+  const bool whole = out.copies.copies.empty() || ground.empty() || !(plant > 0);
+  const double aim = whole ? 0.0 : 0.1 * plant / static_cast<double>(out.copies.copies.size());
+  const double wanted = whole ? 1.0 : facet / static_cast<double>(ground.size()) / aim;
+  const double affordable = std::sqrt(most_parts / static_cast<double>(std::max<std::size_t>(1, ground.size())));
+  const int k = std::clamp(static_cast<int>(std::lround(std::min(wanted, affordable))), 1, most_split);
+  const bool much_too_wide = std::lround(wanted) > most_split;
+  if (much_too_wide && out.copies.periodic)
+    boxes = {Box{{out.copies.periodic->x_low, out.copies.periodic->y_low, 0.0},
+                 {out.copies.periodic->x_high, out.copies.periodic->y_high, 0.0}}};
+  const Footprints footprints(much_too_wide ? std::move(boxes) : std::vector<Box>{});
+  const double finest = std::sqrt(2.0) * std::max(aim, std::sqrt(footprints.area(0.0) / most_pieces));
   for (const auto& t : ground) {
     const auto at = [&](int i, int j) { return t[0] + (t[1] - t[0]) * (double(i) / k) + (t[2] - t[0]) * (double(j) / k); };
-    for (int j = 0; j < k; ++j)
-      for (int i = 0; i + j < k; ++i) {
-        out.copies.ground.push_back({at(i, j), at(i + 1, j), at(i, j + 1)});
-        if (i + j + 1 < k) out.copies.ground.push_back({at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)});
-      }
+    const auto pieces = much_too_wide ? cut_ground_facet(t, footprints, finest) : std::vector<GroundPiece>{};
+    if (pieces.size() > static_cast<std::size_t>(k) * k)
+      for (const auto& piece : pieces) out.copies.ground.push_back(piece.corners);
+    else
+      for (int j = 0; j < k; ++j)
+        for (int i = 0; i + j < k; ++i) {
+          out.copies.ground.push_back({at(i, j), at(i + 1, j), at(i, j + 1)});
+          if (i + j + 1 < k) out.copies.ground.push_back({at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)});
+        }
+    out.ground_parts.push_back(static_cast<std::uint32_t>(out.copies.ground.size()));
   }
+}
+
+/// What lies on the ground lies above it.
+void lower_ground(Members& out) {
+  Box plants;
+  for (const auto& copy : out.copies.copies) plants.add(copy_bounds(*out.copies.surfaces[copy.surface], copy.map));
+  Box all = plants;
+  for (const auto& t : out.copies.ground)
+    for (const auto& p : t) all.add(p);
+  const GroundGap gap(plants, all);
+  out.copies.ground_gap = gap.metres();
+  for (auto& t : out.copies.ground) t = gap.lowered(t);
 }
 
 Members with_light(const Scene& scene, const PlacedScene& placed, Approximation approximation, Originals found,
@@ -139,10 +167,11 @@ Members with_light(const Scene& scene, const PlacedScene& placed, Approximation 
     out.maps.push_back(m.map);
     out.copies.copies.push_back({m.original, m.map.affine()});
   }
+  out.copies.periodic = scene.periodic;
   split_ground(placed.partial ? placed.near_ground : placed.ground.written_out(), out);
   out.ground_facets = out.copies.ground.size();
   out.copies.ground.insert(out.copies.ground.end(), placed.far_ground.begin(), placed.far_ground.end());
-  out.copies.periodic = scene.periodic;
+  lower_ground(out);
   return out;
 }
 

@@ -36,14 +36,14 @@ struct Members {
   Approximation approximation;
   Originals found;
   std::vector<OriginalLight> originals;
-  std::vector<Similarity> maps;         ///< per member, those far away included
-  std::vector<std::uint32_t> stand_in;  ///< per member far away: whose light it has
-  CopyScene copies;                     ///< per member, with the ground
-  std::size_t ground_facets = 0;        ///< of `copies.ground` in which light is solved; those beyond are far away
-  std::uint32_t ground_split = 1;       ///< k: every facet of the ground stands in `copies` as k * k parts, one after the other
-  std::uint64_t merged = 0;             ///< copies that were put together with others
-  double tangled = 0;                   ///< mean share of lines inside members that meet another one
-  std::size_t made_with = 0;            ///< the most that originals held while they were made [bytes]
+  std::vector<Similarity> maps;             ///< per member, those far away included
+  std::vector<std::uint32_t> stand_in;      ///< per member far away: whose light it has
+  CopyScene copies;                         ///< per member, with the ground
+  std::size_t ground_facets = 0;            ///< of `copies.ground` in which light is solved; those beyond are far away
+  std::vector<std::uint32_t> ground_parts;  ///< [facets + 1] first of the parts of `copies.ground` as which each facet of the ground stands
+  std::uint64_t merged = 0;                 ///< copies that were put together with others
+  double tangled = 0;                       ///< mean share of lines inside members that meet another one
+  std::size_t made_with = 0;                ///< the most that originals held while they were made [bytes]
 
   /// In which light is solved.
   std::size_t size() const { return found.solved; }

@@ -17,6 +17,8 @@ namespace sunfleck {
 
 namespace {
 
+constexpr double most_ground = 16.0;  // area over that of members, beyond which ground weighs less where convergence is judged
+
 constexpr std::uint64_t sun_stream = 0x5a6c3e1f9b7d2048ULL, own_stream = 0x3c8f6a1d5e9b7240ULL, ground_stream = 0x2e8b7a4d1c6f3095ULL;
 
 }  // namespace
@@ -49,7 +51,8 @@ double pitch_of_sun(const Members& members, const InstantiationDensity& density)
 }
 
 std::uint32_t rays_of_ground(const Members& members, const InstantiationDensity& density) {
-  return std::max(8u, density.ground_rays / (members.ground_split * members.ground_split));
+  const std::size_t facets = members.ground_parts.size() - 1, parts = members.ground_facets;
+  return parts == 0 ? 8u : std::max(8u, static_cast<std::uint32_t>(std::uint64_t{density.ground_rays} * facets / parts));
 }
 
 void SceneLight::project_sun() {
@@ -220,16 +223,22 @@ void SceneLight::reflect_from_ground(std::vector<float>& e) const {
 
 std::vector<double> SceneLight::product(const Light& a, const Light& b) const {
   std::vector<double> out(columns, 0.0);
+  double of_members = 0.0, of_ground = 0.0;  // areas
   for (std::size_t m = 0; m < members.size(); ++m) {
     const auto& op = members.coarse_of(m);
     const double unit = members.maps[m].scale * members.maps[m].scale * op.line_area / op.directions();
     const float *x = a.fields.data() + field_start[m] * columns, *y = b.fields.data() + field_start[m] * columns;
-    for (std::size_t f = 0; f < op.fields(); ++f)
+    for (std::size_t f = 0; f < op.fields(); ++f) {
+      of_members += unit * op.field_lines[f];
       for (std::size_t c = 0; c < columns; ++c) out[c] += unit * op.field_lines[f] * x[f * columns + c] * y[f * columns + c];
+    }
   }
+  for (const float area : ground.area) of_ground += area;
+  // a kilometre of ground about a few plants must not hide what of these has not converged
+  const double weight = of_ground > 0.0 ? std::min(1.0, most_ground * of_members / of_ground) : 1.0;
   for (std::size_t side = 0; side < ground.seen.size(); ++side)
     for (std::size_t c = 0; c < columns; ++c)
-      out[c] += double{ground.area[side / 2]} * a.ground[side * columns + c] * b.ground[side * columns + c];
+      out[c] += weight * ground.area[side / 2] * a.ground[side * columns + c] * b.ground[side * columns + c];
   return out;
 }
 

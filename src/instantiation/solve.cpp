@@ -11,6 +11,7 @@
 #include <sunfleck/core/memory.hpp>
 #include <sunfleck/core/release_memory.hpp>
 #include <sunfleck/instantiation/plan.hpp>
+#include <sunfleck/light/wide_sun.hpp>
 
 #include "instantiation/batches.hpp"
 #include "instantiation/closed_light.hpp"
@@ -98,6 +99,11 @@ OperatorDensity gather_density(const InstantiationDensity& density, std::size_t 
 }
 
 void check_instantiable(const Scene& scene) {
+  for (const auto& state : scene.states)
+    if (state.sun && state.sun->angular_diameter_deg > widest_narrow_sun_deg)
+      throw InputError(location(scene.file, 0, "sun.angular_diameter"),
+                       fmt::format("{} with method 'instantiation'", state.sun->angular_diameter_deg),
+                       fmt::format("at most {} degrees, or method clustering, flat, direct or reference", widest_narrow_sun_deg));
   if (!scene.lamps.empty() || !scene.sensors.empty())
     throw InputError(location(scene.file, 0, scene.lamps.empty() ? "sensor" : "lamp"),
                      scene.lamps.empty() ? "a sensor with method 'instantiation'" : "a lamp with method 'instantiation'",

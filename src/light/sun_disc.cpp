@@ -4,6 +4,7 @@
 
 #include <sunfleck/core/sampling.hpp>
 #include <sunfleck/light/sun.hpp>
+#include <sunfleck/light/wide_sun.hpp>
 
 namespace sunfleck {
 
@@ -23,7 +24,10 @@ std::vector<Vec3> sun_disc(const Sun& sun, std::uint32_t points, std::uint64_t s
   orthonormal_frame(sun.direction, u, v);
   std::vector<Vec3> out;
   for (std::uint32_t i = 0; i < points; ++i) {
-    const double r = radius * std::sqrt((i + 0.5) / points), a = 2.399963229728653 * i + turn;
+    const double share = (i + 0.5) / points;  // of the disc's solid angle
+    const bool narrow = sun.angular_diameter_deg <= widest_narrow_sun_deg;
+    const double r = narrow ? radius * std::sqrt(share) : std::acos(1.0 - share * (1.0 - std::cos(radius)));
+    const double a = 2.399963229728653 * i + turn;
     out.push_back(glm::normalize(sun.direction + std::tan(r) * (std::cos(a) * u + std::sin(a) * v)));
   }
   return out;

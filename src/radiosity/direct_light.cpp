@@ -8,6 +8,8 @@
 
 #include <sunfleck/core/memory.hpp>
 #include <sunfleck/core/sampling.hpp>
+#include <sunfleck/light/open_light.hpp>
+#include <sunfleck/light/wide_sun.hpp>
 #include <sunfleck/visibility/projection.hpp>
 
 #include "transport.hpp"
@@ -17,6 +19,8 @@ namespace sunfleck {
 namespace {
 
 constexpr std::uint64_t sky_stream = 0x51ed270b27c4f2a9ULL, sun_stream = 0x2545f4914f6cdd1dULL;
+
+constexpr std::uint32_t fewest_wide_samples = 128;  ///< of the disc of a wide sun
 
 /// Mean distance between lines so that an organ of the mean size meets `lines` of them (a leaf shows half its area on average).
 double pitch_for(double organ_area, double lines) {
@@ -161,72 +165,159 @@ class DirectLightSolver {
   }
 
  private:
-  /// E_side / E_horizontal = pi * sum over directions of r(d) * lines on which the side sees the sky / sum of all its lines, each line
-  /// counted by the area it stands for.
+  /// The skies by directions of their own: E_side = E of the open plane x the share of it that is seen.
   void sky() {
     const auto& density = settings_.density;
-    const std::size_t cells = s_.cells();
-    const double pitch = pitch_for(e_.organ_area, density.sky_lines_per_organ);
+    ManyDirections many;
     bool below = false;
     for (const auto* sky : skies_) below = below || sky->reaches_below_horizon();
-    SkySums sums(cells, skies_.size());
-    constexpr std::uint32_t batch = 8;
+    for (std::uint32_t i = 0; i < density.sky_directions; ++i)
+      many.towards.push_back(hemisphere_direction(i, density.sky_directions, mix(settings_.seed, sky_stream)));
+    for (const auto* sky : skies_) {
+      auto &from_above = many.above.emplace_back(), &from_below = many.below.emplace_back();
+      for (const auto& d : many.towards) {
+        from_above.push_back(static_cast<float>(sky->relative_radiance(d)));
+        if (below) from_below.push_back(static_cast<float>(sky->relative_radiance(-d)));
+      }
+    }
+    if (!below) many.below.clear();
+    const auto shares = share_seen(many, pitch_for(e_.organ_area, density.sky_lines_per_organ), mix(settings_.seed, sky_stream, 1), "sky");
+    for (std::size_t k = 0; k < skies_.size(); ++k) {
+      const OpenSky open(*skies_[k]);
+      auto& sky = out_.sky.emplace_back(light_of_shares(shares[k], [&](const Vec3& normal) { return open.on(normal); }));
+      conserve(sky, skies_[k]->reaches_below_horizon() ? 2.0 : 1.0);
+    }
+  }
+
+  /// A disc so wide that surfaces may turn one side to a part of it and the other side to the rest.
+  void wide_sun(const Sun& sun) {
+    const auto& density = settings_.density;
+    const auto samples = std::max(fewest_wide_samples, sun_samples(sun, s_, e_.organ_area, density));
+    const auto seed = mix(settings_.seed, sun_stream);
+    ManyDirections many;
+    many.towards = sun_disc(sun, samples, seed);
+    many.above.emplace_back(samples, 1.0f);
+    double facing = 0.0;  // of a plane that faces the disc's centre
+    for (auto& d : many.towards) {
+      if (d.z < 1e-3 && s_.periodic) d = glm::normalize(Vec3{d.x, d.y, 1e-3});
+      facing += glm::dot(d, sun.direction);
+    }
+    const auto shares = share_seen(many, pitch_for(e_.organ_area, density.sun_lines_per_organ / samples), mix(seed, 1), "sun");
+    const auto mean_of = [&](const Vec3& normal, auto&& value) {
+      double sum = 0.0;
+      for (const auto& d : many.towards) sum += value(glm::dot(normal, d));
+      return sum;
+    };
+    auto& received = out_.wide_sun.back();
+    received =
+        light_of_shares(shares[0], [&](const Vec3& normal) { return mean_of(normal, [](double c) { return std::max(0.0, c); }) / facing; });
+    double level = 0.0;
+    for (const auto& d : many.towards) level += d.z / facing;
+    conserve(received, level);
+    out_.sunlit.back() = light_of_shares(
+        shares[0], [&](const Vec3& normal) { return mean_of(normal, [](double c) { return c > 0.0 ? 1.0 : 0.0; }) / samples; });
+  }
+
+  /// Light from many directions, each of several lights with a weight in each; `below` [lights][directions] is that from the opposite
+  /// direction, and may be empty.
+  struct ManyDirections {
+    std::vector<Vec3> towards;
+    std::vector<std::vector<float>> above, below;
+  };
+
+  /// Per light and side of a cell: of the light that comes from where the side faces, the share that reaches it. Both are sums over the
+  /// same lines, so that what stands in the open has all of it.
+  std::vector<std::vector<float>> share_seen(const ManyDirections& many, double pitch, std::uint64_t seed, const char* phase) {
+    const std::size_t cells = s_.cells(), lights = many.above.size(), directions = many.towards.size();
+    std::vector<std::vector<float>> seen(lights, std::vector<float>(2 * cells, 0.0f)), facing = seen;
+    constexpr std::size_t batch = 8;
+    const bool below = !many.below.empty();
     std::vector<VisibleCounts> counts(batch), counts_below(below ? batch : 0);
-    std::vector<float> weight(batch);  // a line of this direction stands for so many of area pitch^2
-    std::vector<Vec3> direction(batch);
-    for (std::uint32_t first = 0; first < density.sky_directions; first += batch) {
+    std::vector<float> area(batch);  // that a line stands for, over pitch^2
+    for (std::size_t first = 0; first < directions; first += batch) {
       progress_.check();
-      progress_.fraction("sky", static_cast<double>(first) / density.sky_directions);
-      const std::uint32_t n = std::min(batch, density.sky_directions - first);
-      tbb::parallel_for(std::uint32_t{0}, n, [&](std::uint32_t i) {
-        direction[i] = hemisphere_direction(first + i, density.sky_directions, mix(settings_.seed, sky_stream));
-        const auto p = project_set_member(s_, direction[i], first + i, pitch, mix(settings_.seed, sky_stream, 1));
-        weight[i] = static_cast<float>(p.line_area / (pitch * pitch));
+      progress_.fraction(phase, static_cast<double>(first) / static_cast<double>(directions));
+      const std::size_t n = std::min(batch, directions - first);
+      tbb::parallel_for(std::size_t{0}, n, [&](std::size_t i) {
+        const auto p = project_set_member(s_, many.towards[first + i], static_cast<std::uint32_t>(first + i), pitch, seed);
+        area[i] = static_cast<float>(p.line_area / (pitch * pitch));
         clear(counts[i], cells);
         count_visible(s_, p, false, counts[i]);
-        if (below) {
-          clear(counts_below[i], cells);
-          count_visible(s_, p, true, counts_below[i]);
-        }
+        if (!below) return;
+        clear(counts_below[i], cells);
+        count_visible(s_, p, true, counts_below[i]);
       });
-      for (std::uint32_t i = 0; i < n; ++i)
+      for (std::size_t i = 0; i < n; ++i)
         for (const float lines : counts[i].all) out_.fragments += static_cast<std::uint64_t>(lines);
-      std::vector<float> radiance(n * skies_.size()), radiance_below(n * skies_.size());
-      for (std::uint32_t i = 0; i < n; ++i)
-        for (std::size_t k = 0; k < skies_.size(); ++k) {
-          radiance[i * skies_.size() + k] = static_cast<float>(std::numbers::pi * skies_[k]->relative_radiance(direction[i]));
-          radiance_below[i * skies_.size() + k] = static_cast<float>(std::numbers::pi * skies_[k]->relative_radiance(-direction[i]));
-        }
       tbb::parallel_for(tbb::blocked_range<std::size_t>(0, cells, 4096), [&](const auto& range) {
-        for (std::uint32_t i = 0; i < n; ++i) {
-          const auto dx = static_cast<float>(direction[i].x), dy = static_cast<float>(direction[i].y),
-                     dz = static_cast<float>(direction[i].z);
+        for (std::size_t i = 0; i < n; ++i) {
+          const Vec3& d = many.towards[first + i];
+          const auto dx = static_cast<float>(d.x), dy = static_cast<float>(d.y), dz = static_cast<float>(d.z);
           for (std::size_t c = range.begin(); c < range.end(); ++c) {
-            if (counts[i].all[c] == 0.0f) continue;
-            sums.all(c) += weight[i] * counts[i].all[c];
-            const float visible = weight[i] * counts[i].visible[c];
+            const float lines = counts[i].all[c];
+            if (lines == 0.0f) continue;
             const auto t = e_.row_of_cell[c];
             const bool front_up = s_.normal[0][t] * dx + s_.normal[1][t] * dy + s_.normal[2][t] * dz > 0.0f;
             const std::size_t up = 2 * c + (front_up ? 0 : 1);
-            sums.seen(up) += visible;
-            for (std::size_t k = 0; k < skies_.size(); ++k) sums.seen(up, 1 + k) += radiance[i * skies_.size() + k] * visible;
-            if (below) {
-              const float visible_below = weight[i] * counts_below[i].visible[c];
-              sums.seen(up ^ 1) += visible_below;
-              for (std::size_t k = 0; k < skies_.size(); ++k)
-                sums.seen(up ^ 1, 1 + k) += radiance_below[i * skies_.size() + k] * visible_below;
+            for (std::size_t k = 0; k < lights; ++k) {
+              const float weight = area[i] * many.above[k][first + i];
+              seen[k][up] += weight * counts[i].visible[c];
+              facing[k][up] += weight * lines;
+              if (!below) continue;
+              const float weight_below = area[i] * many.below[k][first + i];
+              seen[k][up ^ 1] += weight_below * counts_below[i].visible[c];
+              facing[k][up ^ 1] += weight_below * lines;
             }
           }
         }
       });
     }
-    // a side of area A meets A D / (2 pitch^2) lines
-    sky_from_lines(facets_, e_, sums, 2.0 * pitch * pitch / density.sky_directions, out_);
+    std::vector<bool> unsampled(cells);
+    for (std::size_t k = 0; k < lights; ++k) {
+      for (std::size_t c = 0; c < cells; ++c) unsampled[c] = facing[k][2 * c] == 0.0f && facing[k][2 * c + 1] == 0.0f;
+      for (std::size_t i = 0; i < 2 * cells; ++i)
+        if (facing[k][i] > 0.0f) seen[k][i] /= facing[k][i];
+      fill_unsampled(e_, unsampled, seen[k]);
+    }
+    return seen;
+  }
+
+  /// Shares times what the open plane has: open(unit normal out of the side).
+  template <class Open>
+  std::vector<float> light_of_shares(const std::vector<float>& share, const Open& open) const {
+    std::vector<float> light(share.size());
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, s_.size(), 256), [&](const auto& range) {
+      for (std::size_t t = range.begin(); t < range.end(); ++t) {
+        if (s_.split[t] == 0) continue;
+        const Vec3 normal{s_.normal[0][t], s_.normal[1][t], s_.normal[2][t]};
+        const float sides[2] = {static_cast<float>(open(normal)), static_cast<float>(open(-normal))};
+        for (std::size_t i = 2 * std::size_t{s_.first_cell[t]}; i < 2 * std::size_t{s_.first_cell[t + 1]}; ++i)
+          light[i] = sides[i % 2] * share[i];
+      }
+    });
+    return light;
+  }
+
+  /// In a periodic cell all light ends on plants or ground: `per_area` of the cell.
+  void conserve(std::vector<float>& light, double per_area) const {
+    if (!s_.periodic || !scene_.ground) return;
+    double sum = 0.0;
+    for (std::size_t c = 0; c < s_.cells(); ++c) sum += cell_area(e_, c) * (static_cast<double>(light[2 * c]) + light[2 * c + 1]);
+    if (!(sum > 0.0)) return;
+    const auto factor = static_cast<float>(per_area * s_.periodic->area() / sum);
+    for (auto& value : light) value *= factor;
   }
 
   void sun(const Sun& sun) {
     const auto& density = settings_.density;
     const std::size_t cells = s_.cells();
+    auto& lit = out_.sunlit.emplace_back();
+    out_.wide_sun.emplace_back();
+    auto& cosine = out_.sun_cosine.emplace_back(s_.size());
+    for (std::size_t t = 0; t < s_.size(); ++t)
+      cosine[t] =
+          static_cast<float>(s_.normal[0][t] * sun.direction.x + s_.normal[1][t] * sun.direction.y + s_.normal[2][t] * sun.direction.z);
+    if (sun.angular_diameter_deg > widest_narrow_sun_deg) return wide_sun(sun);
     const auto samples = sun_samples(sun, s_, e_.organ_area, density);
     const double pitch = pitch_for(e_.organ_area, density.sun_lines_per_organ / samples);
     const auto seed = mix(settings_.seed, sun_stream);
@@ -258,11 +349,7 @@ class DirectLightSolver {
       });
     }
     counts = {};
-    auto& lit = out_.sunlit.emplace_back(2 * cells, 0.0f);
-    auto& cosine = out_.sun_cosine.emplace_back(s_.size());
-    for (std::size_t t = 0; t < s_.size(); ++t)
-      cosine[t] =
-          static_cast<float>(s_.normal[0][t] * sun.direction.x + s_.normal[1][t] * sun.direction.y + s_.normal[2][t] * sun.direction.z);
+    lit.assign(2 * cells, 0.0f);
     std::vector<bool> unsampled(cells);
     Conservation conservation;
     const auto shadow = [&](std::size_t c) { return cell_area(e_, c) * std::fabs(cosine[e_.row_of_cell[c]]); };
@@ -314,7 +401,7 @@ class DirectLightSolver {
 
 std::size_t DirectLight::bytes() const {
   std::size_t total = bytes_of(sky_seen);
-  for (const auto* list : {&sky, &sunlit, &sun_cosine})
+  for (const auto* list : {&sky, &sunlit, &sun_cosine, &wide_sun})
     for (const auto& v : *list) total += bytes_of(v);
   return total;
 }

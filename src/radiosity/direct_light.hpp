@@ -18,9 +18,13 @@ struct DirectLight {
   std::vector<std::uint32_t> sky_of_state;  ///< [s] row of `sky`, or none
   std::vector<std::uint32_t> sun_of_state;  ///< [s] row of `sunlit`, or none
   std::vector<std::vector<float>> sky;      ///< per distinct sky model: irradiance over the sky's horizontal irradiance [2 * cells]
-  std::vector<float> sky_seen;  ///< [2 * cells] cosine-weighted fraction of the side's hemisphere that is open sky; empty without sky
+  /// [2 * cells] cosine-weighted fraction of the side's hemisphere that is open sky; empty without sky, and where nothing is scattered.
+  std::vector<float> sky_seen;
   std::vector<std::vector<float>> sunlit;      ///< per sun: fraction of the side that the sun reaches [2 * cells]
   std::vector<std::vector<float>> sun_cosine;  ///< per sun: cosine between each surface row's front normal and the sun [rows]
+  /// Per sun: irradiance over that on a plane that faces the disc's centre [2 * cells]; empty for narrow discs, whose light is
+  /// max(0, +-sun_cosine) x sunlit.
+  std::vector<std::vector<float>> wide_sun;
   std::uint64_t fragments = 0;
   static constexpr std::uint32_t none = LightSources::none;
 

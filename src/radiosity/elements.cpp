@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
 
 #include <sunfleck/core/memory.hpp>
+#include <sunfleck/visibility/ground_gap.hpp>
 
 namespace sunfleck {
 
@@ -28,6 +31,12 @@ double mean_organ_area(const FacetScene& facets) {
   return organs > 0 ? sum / organs : 1.0;
 }
 
+/// Leaves wider than their periodic cell lie many on each other: one value for a cell's width of them tells nothing of how light fades from
+/// one to the next [m^2].
+double largest_periodic_element(double cell_area, double organ_area) {
+  return organ_area > cell_area ? cell_area / 128.0 * cell_area / organ_area : std::numeric_limits<double>::infinity();
+}
+
 /// Organs in tree order, but within small clusters those of one material together, so that small ones can share an element.
 std::vector<std::uint32_t> gather_materials(const ClusterOrder& tree, const std::vector<std::uint32_t>& material_of_organ) {
   auto organs = tree.organs;
@@ -46,20 +55,65 @@ std::vector<std::uint32_t> gather_materials(const ClusterOrder& tree, const std:
 
 /// Cells tell sunlit from shaded parts of an element apart, where it reflects the sun's light on.
 constexpr double cells_per_element = 2.0;
+constexpr long most_split = 32;
 
 std::uint16_t split_for(double area, double aim) {
-  return static_cast<std::uint16_t>(std::clamp(std::lround(std::sqrt(area / aim)), 1L, 32L));
+  return static_cast<std::uint16_t>(std::clamp(std::lround(std::sqrt(area / aim)), 1L, most_split));
 }
 
-/// Flat ground farther from the plants than a third of their size is lit too evenly to be worth cutting.
-bool near_plants(const Triangle& t, const Box& plants) {
+/// Ground farther from the plants than a third of their size is lit too evenly to be worth cutting.
+double lit_unevenly_within(const Box& plants) {
   const Vec3 size = plants.size();
-  const double margin = std::max({size.x, size.y, size.z}) / 3.0;
-  for (const auto& p : t)
-    if (p.x > plants.low.x - margin && p.x < plants.high.x + margin && p.y > plants.low.y - margin && p.y < plants.high.y + margin)
-      return true;
-  return false;
+  return std::max({size.x, size.y, size.z}) / 3.0;
 }
+
+/// Facets of the ground under plants that are too wide to be split finely enough are cut in pieces.
+class GroundUnderPlants {
+ public:
+  /// `aim`: area of a cell [m^2].
+  GroundUnderPlants(const FacetScene& facets, double aim, double plant_cells, bool split) : facets_(facets) {
+    if (facets.plant_facets == 0 || facets.plant_facets == facets.size()) return;
+    std::vector<Box> copies(facets.copies.size());
+    Box plants;
+    for (const auto& shape : facets.shapes) {
+      const auto next = &shape + 1 < facets.shapes.data() + facets.shapes.size() ? (&shape + 1)->first_facet : facets.plant_facets;
+      for (std::size_t f = shape.first_facet; f < next; ++f)
+        if (facets.area[f] > 0.0f)
+          for (const auto& p : facets.corners[f]) copies[shape.copy].add(p);
+    }
+    for (const auto& box : copies) plants.add(box);
+    if (plants.empty()) return;
+    if (const auto& cell = facets.periodic) {  // images of plants are everywhere
+      plants.add(Vec3{cell->x_low, cell->y_low, plants.low.z});
+      plants.add(Vec3{cell->x_high, cell->y_high, plants.high.z});
+      copies = {plants};
+    }
+    plants_.emplace(std::move(copies));
+    all_ = plants;
+    margin_ = lit_unevenly_within(plants);
+    aim_ = std::max(aim, plants_->area(margin_) / (20'000.0 + 4.0 * plant_cells));
+    finest_ = (split ? 8.0 : 1.5) * std::sqrt(aim_);
+  }
+  bool cuts(std::size_t facet) const {
+    if (!plants_ || facet < facets_.plant_facets) return false;
+    return facets_.area[facet] > most_split * most_split * aim_ && near(facets_.corners[facet]);
+  }
+  std::vector<GroundPiece> pieces(std::size_t facet) const { return cut_ground_facet(facets_.corners[facet], *plants_, finest_); }
+  bool near(const Triangle& t) const {
+    if (!plants_) return false;
+    for (const auto& p : t)
+      if (p.x > all_.low.x - margin_ && p.x < all_.high.x + margin_ && p.y > all_.low.y - margin_ && p.y < all_.high.y + margin_)
+        return true;
+    return plants_->distance(t) < margin_;
+  }
+  double aim() const { return aim_; }
+
+ private:
+  const FacetScene& facets_;
+  std::optional<Footprints> plants_;
+  Box all_;
+  double margin_ = 0, aim_ = 0, finest_ = 0;
+};
 
 /// An element that cells are being gathered into.
 struct OpenElement {
@@ -71,15 +125,23 @@ struct OpenElement {
 
 std::size_t Elements::bytes() const {
   return bytes_of(order) + surface.bytes() + bytes_of(element_of_cell) + bytes_of(row_of_cell) + bytes_of(organ_of_row) +
-         bytes_of(first_cell) + bytes_of(cells) + bytes_of(area) + bytes_of(material);
+         bytes_of(first_cell) + bytes_of(cells) + bytes_of(area) + bytes_of(material) + bytes_of(pieces.of_row) + bytes_of(pieces.corners) +
+         piece_index.bytes();
+}
+
+Elements::Place Elements::place_of(std::uint32_t first_row, double u, double v) const {
+  const std::uint32_t row = piece_index.knows(order[first_row]) ? piece_index.find(order[first_row], u, v) : first_row;
+  return {row, surface.first_cell[row] + cell_of(static_cast<float>(u), static_cast<float>(v), surface.split[row])};
 }
 
 Elements make_elements(const Scene& scene, const FacetScene& facets, const RadiositySettings& settings) {
   const bool flat = settings.method == RadiosityMethod::flat;
   Elements e;
   const std::size_t n = facets.size();
+  e.plant_facets = facets.plant_facets;
   e.organ_area = mean_organ_area(facets);
   e.element_area = e.organ_area / settings.density.elements_per_organ;
+  if (scene.periodic) e.element_area = std::min(e.element_area, largest_periodic_element(scene.periodic->area(), e.organ_area));
   e.tree = cluster_order(scene, facets);
   // facets by organ, file order within
   std::vector<std::uint32_t> start(facets.organs.size() + 1, 0), members(n), material_of_organ(facets.organs.size(), 0);
@@ -92,27 +154,42 @@ Elements make_elements(const Scene& scene, const FacetScene& facets, const Radio
   for (std::size_t f = n; f-- > 0;) material_of_organ[facets.organ[f]] = facets.optics[f];
   const auto organs = gather_materials(e.tree, material_of_organ);
 
-  const bool ground_is_flat = scene.ground && !scene.ground->mesh && !scene.periodic;
-  Box plants;
-  if (ground_is_flat)
-    for (std::size_t f = 0; f < facets.plant_facets; ++f)
-      if (facets.area[f] > 0)
-        for (const auto& p : facets.corners[f]) plants.add(p);
+  const bool ground_is_flat = scene.ground && !scene.periodic && ground_is_level(facets);
+  double plant_area = 0;
+  for (std::size_t f = 0; f < facets.plant_facets; ++f) plant_area += facets.area[f];
+  const double aim = e.element_area / cells_per_element;
+  const GroundUnderPlants ground(facets, flat ? e.element_area : aim, plant_area / aim, !flat);
   std::vector<std::uint16_t> split;
   split.reserve(n);
   e.order.reserve(n);
+  const auto add_row = [&](std::uint32_t facet, std::uint16_t cells, std::uint32_t piece) {
+    if (piece != RowPieces::whole) e.pieces.of_row.resize(e.order.size(), RowPieces::whole);
+    if (!e.pieces.of_row.empty()) e.pieces.of_row.push_back(piece);
+    split.push_back(cells);
+    e.order.push_back(facet);
+  };
   for (const auto organ : organs)
     for (std::uint32_t k = start[organ]; k < start[organ + 1]; ++k) {
       const auto f = members[k];
-      const bool cut = !flat && facets.area[f] > 0 &&
-                       (f < facets.plant_facets || !ground_is_flat || facets.plant_facets == 0 || near_plants(facets.corners[f], plants));
-      split.push_back(cut ? split_for(facets.area[f], e.element_area / cells_per_element) : std::uint16_t{1});
-      e.order.push_back(f);
+      const bool wider_than_cell = facets.periodic && f < facets.plant_facets && facets.area[f] > 0.5 * facets.periodic->area();
+      if (ground.cuts(f)) {
+        for (const auto& piece : ground.pieces(f)) {
+          const double area = glm::length(area_vector(piece.corners));
+          e.piece_index.add(f, piece, static_cast<std::uint32_t>(e.order.size()));
+          e.pieces.corners.push_back(piece.corners);
+          add_row(f, !flat && ground.near(piece.corners) ? split_for(area, ground.aim()) : std::uint16_t{1},
+                  static_cast<std::uint32_t>(e.pieces.corners.size() - 1));
+        }
+        continue;
+      }
+      const bool cut = facets.area[f] > 0 && (wider_than_cell || (!flat && (f < facets.plant_facets || !ground_is_flat ||
+                                                                            facets.plant_facets == 0 || ground.near(facets.corners[f]))));
+      add_row(f, cut ? split_for(facets.area[f], aim) : std::uint16_t{1}, RowPieces::whole);
     }
-  e.surface = make_surface(facets, e.order, split, ground_is_flat);
+  e.surface = make_surface(facets, e.order, split, e.pieces, ground_is_flat);
   const auto& s = e.surface;
-  e.organ_of_row.resize(n);
-  for (std::size_t t = 0; t < n; ++t) e.organ_of_row[t] = facets.organ[e.order[t]];
+  e.organ_of_row.resize(s.size());
+  for (std::size_t t = 0; t < s.size(); ++t) e.organ_of_row[t] = facets.organ[e.order[t]];
   e.row_of_cell.resize(s.cells());
   for (std::uint32_t t = 0; t < s.size(); ++t)
     for (std::uint32_t c = s.first_cell[t]; c < s.first_cell[t + 1]; ++c) e.row_of_cell[c] = t;
@@ -140,10 +217,11 @@ Elements make_elements(const Scene& scene, const FacetScene& facets, const Radio
       box = both;
     }
     const double part_area = is_small ? e.element_area : organ_area / std::max(1.0, std::round(organ_area / e.element_area));
-    for (std::uint32_t k = start[organ]; k < start[organ + 1]; ++k, ++row)
+    for (; row < s.size() && e.organ_of_row[row] == organ; ++row)
       for (std::uint32_t c = s.first_cell[row]; c < s.first_cell[row + 1]; ++c) {
         const auto material = facets.optics[e.order[row]];
-        if (!current.open || e.material[current.index] != material) {
+        const bool fills_one = !e.pieces.of_row.empty() && e.order[row] >= e.plant_facets && s.cell_area[row] >= 0.999f * part_area;
+        if (!current.open || fills_one || e.material[current.index] != material) {
           current = {true, static_cast<std::uint32_t>(e.size())};
           e.area.push_back(0.0f);
           e.material.push_back(material);

@@ -7,6 +7,7 @@
 
 #include <sunfleck/core/memory.hpp>
 #include <sunfleck/core/sampling.hpp>
+#include <sunfleck/visibility/ground_gap.hpp>
 
 namespace sunfleck {
 
@@ -55,6 +56,7 @@ LampIrradiance lamp_irradiance(const LampLight& lamps, const FacetScene& facets,
   out.set_of_state = lamps.lamps().set_of_state;
   out.sets.assign(sets, std::vector<float>(2 * s.cells() * bands, 0.0f));
   out.rays = lamp_rays(e, settings.density);
+  const GroundGap gap(facets);
   constexpr std::size_t block = 2048;
   for (std::size_t first = 0; first < rows; first += block) {
     progress.check();
@@ -65,7 +67,8 @@ LampIrradiance lamp_irradiance(const LampLight& lamps, const FacetScene& facets,
         if (s.split[t] == 0 || progress.cancelled()) continue;
         const auto facet = e.order[t];
         const auto rays = lamp_rays(s.cell_area[t], e.organ_area, settings.density);
-        each_cell(facets.corners[facet], s.split[t], [&](std::uint32_t number, const Patch& patch) {
+        const Triangle& given = e.pieces.corners_of(t, facets.corners[facet]);
+        each_cell(facet < facets.plant_facets ? given : gap.lowered(given), s.split[t], [&](std::uint32_t number, const Patch& patch) {
           std::fill(light.begin(), light.end(), 0.0);
           lamps.on_patch(patch, facet, 0.0, rays, mix(mix(settings.seed, lamp_stream), facet, number), scene, 1.0, light.data());
           const std::size_t cell = s.first_cell[t] + number;

@@ -10,6 +10,7 @@ namespace {
 struct ArrivingLight {
   std::vector<float> scattered;  ///< [2][columns] irradiance [W m^-2]
   std::vector<float> sky, lit;   ///< [2][skies], [2][suns] as in DirectLight
+  std::vector<float> wide;       ///< [2][suns] DirectLight::wide_sun; 0 for narrow suns
   std::vector<float> lamp;       ///< [2][sets of lamps][b] irradiance [W m^-2]
 };
 
@@ -27,7 +28,7 @@ class RowBlock {
     if (!lit_.direct.sunlit.empty()) sunlit.assign(lit_.states * count * 2, 0.0f);
   }
 
-  /// Facet first + i, row t of the surface.
+  /// Facet first + i, whose first row of the surface is t.
   void facet(std::size_t i, std::size_t t, ArrivingLight& light, std::vector<Balance>& balance) {
     const auto& optics = lit_.optics_of_row(t);
     const double area = lit_.facets.area[first_ + i];
@@ -46,7 +47,8 @@ class RowBlock {
         if (sun_row != DirectLight::none) {
           const float cosine = direct_light.sun_cosine[sun_row][t];
           sunlit[(state * count_ + i) * 2 + side] = light.lit[side * suns + sun_row];
-          lit = light.lit[side * suns + sun_row] * std::max(0.0f, side == 0 ? cosine : -cosine);
+          lit = direct_light.wide_sun[sun_row].empty() ? light.lit[side * suns + sun_row] * std::max(0.0f, side == 0 ? cosine : -cosine)
+                                                       : light.wide[side * suns + sun_row];
         }
         for (std::size_t band = 0; band < bands; ++band) {
           float direct = 0.0f;
@@ -68,26 +70,27 @@ class RowBlock {
 
  private:
   void light_of_facet(std::size_t t, ArrivingLight& light) const {
-    const auto& s = lit_.elements.surface;
+    const auto& e = lit_.elements;
     const auto& direct = lit_.direct;
-    const std::uint32_t begin = s.first_cell[t], end = s.first_cell[t + 1];
-    const float share = 1.0f / static_cast<float>(end - begin);
     const std::size_t skies = direct.sky.size(), suns = direct.sunlit.size(), bands = lit_.bands, columns = lit_.columns();
     const std::size_t lamp_values = lit_.lamp.sets.size() * bands;
     light.scattered.assign(scattered_.empty() ? 0 : 2 * columns, 0.0f);
     light.sky.assign(2 * skies, 0.0f);
     light.lit.assign(2 * suns, 0.0f);
+    light.wide.assign(2 * suns, 0.0f);
     light.lamp.assign(2 * lamp_values, 0.0f);
     const auto add = [&](std::size_t part, std::size_t side, float part_share) {
       const float* from = scattered_.gathered.data() + (2 * part + side) * columns;
       float* to = light.scattered.data() + side * columns;
       for (std::size_t column = 0; column < columns; ++column) to[column] += part_share * from[column];
     };
-    for (std::uint32_t c = begin; c < end; ++c)
+    e.for_cells_of_facet(t, [&](std::uint32_t c, float share) {
       for (std::size_t side = 0; side < 2; ++side) {
         const std::size_t cell_side = 2 * std::size_t{c} + side;
         for (std::size_t k = 0; k < skies; ++k) light.sky[side * skies + k] += share * direct.sky[k][cell_side];
         for (std::size_t k = 0; k < suns; ++k) light.lit[side * suns + k] += share * direct.sunlit[k][cell_side];
+        for (std::size_t k = 0; k < suns; ++k)
+          if (!direct.wide_sun[k].empty()) light.wide[side * suns + k] += share * direct.wide_sun[k][cell_side];
         for (std::size_t k = 0; k < lamp_values; ++k)
           light.lamp[side * lamp_values + k] += share * lit_.lamp.sets[k / bands][cell_side * bands + k % bands];
         if (scattered_.empty()) continue;
@@ -96,6 +99,7 @@ class RowBlock {
         add(element, side, share * (lit_.rest(cell_side) - inside));
         if (inside > 0.0f) add(scattered_.enclosed_part[element], side, share * inside);
       }
+    });
   }
 
   const LitElements& lit_;

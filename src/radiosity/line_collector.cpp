@@ -4,25 +4,27 @@
 
 namespace sunfleck {
 
-LineCollector::LineCollector(const Elements& elements, const ClusterTree* tree, double link_error, const std::vector<bool>& interior)
-    : e_(elements), tree_(tree), link_error_(static_cast<float>(link_error)) {
-  if (interior.empty()) return;
+LineCollector::LineCollector(const Elements& elements, const ClusterTree* tree, double link_error, const std::vector<bool>& interior,
+                             const GroundContact& contact)
+    : e_(elements), tree_(tree), link_error_(static_cast<float>(link_error)), contact_(contact) {
+  if (interior.empty() && !contact.any()) return;
   interior_ = interior_of_cells(elements, interior);
   inside_ = std::vector<std::atomic<std::uint32_t>>(e_.surface.cells());
 }
 
-void LineCollector::collect(LineBundle& bundle, DirectionLines& out) {
+void LineCollector::collect(LineBundle& bundle, const Vec3& direction, DirectionLines& out) {
   const std::size_t n = bundle.side.size();
-  out.cell_side.swap(bundle.side);
   out.side.resize(n);
   out.link.resize(n);
   out.far.clear();
-  for (std::size_t k = 0; k < n; ++k) out.side[k] = 2 * e_.element_of_cell[out.cell_side[k] >> 1] + (out.cell_side[k] & 1u);
+  for (std::size_t k = 0; k < n; ++k) out.side[k] = 2 * e_.element_of_cell[bundle.side[k] >> 1] + (bundle.side[k] & 1u);
   FarPair far;
   for (std::size_t q = 0; q + 1 < bundle.start.size(); ++q) {
     const std::uint32_t begin = bundle.start[q], end = bundle.start[q + 1];
     if (begin == end) continue;
-    if (!interior_.empty()) mark_enclosed(out.cell_side.data() + begin, end - begin, out.side.data() + begin);
+    const auto enclose = [&](std::uint32_t k) { mark_enclosed(bundle.side[k] >> 1, out.side[k]); };
+    if (!interior_.empty()) each_enclosed(interior_, bundle.side.data() + begin, end - begin, [&](std::uint32_t k) { enclose(begin + k); });
+    if (contact_.any()) contact_.each_covered(bundle, direction, begin, end, enclose);
     out.link[begin] = HitLink::lowest;
     for (std::uint32_t k = begin + 1; k < end; ++k) {
       out.link[k] = HitLink::near;
@@ -33,6 +35,7 @@ void LineCollector::collect(LineBundle& bundle, DirectionLines& out) {
       out.far.push_back(far);
     }
   }
+  out.cell_side.swap(bundle.side);
 }
 
 bool LineCollector::cluster_link(std::uint32_t low, std::uint32_t high, double distance, FarPair& pair) const {
@@ -61,12 +64,10 @@ bool LineCollector::cluster_link(std::uint32_t low, std::uint32_t high, double d
   return true;
 }
 
-void LineCollector::mark_enclosed(const std::uint32_t* hit, std::uint32_t n, std::uint32_t* side) {
-  each_enclosed(interior_, hit, n, [&](std::uint32_t k) {
-    if (side[k] & enclosed_bit) return;
-    side[k] |= enclosed_bit;
-    inside_[hit[k] >> 1].fetch_add(1, std::memory_order_relaxed);
-  });
+void LineCollector::mark_enclosed(std::uint32_t cell, std::uint32_t& side) {
+  if (side & enclosed_bit) return;
+  side |= enclosed_bit;
+  inside_[cell].fetch_add(1, std::memory_order_relaxed);
 }
 
 }  // namespace sunfleck

@@ -7,6 +7,7 @@
 
 #include <sunfleck/visibility/projection.hpp>
 
+#include "ground_contact.hpp"
 #include "line_links.hpp"
 
 namespace sunfleck {
@@ -38,22 +39,24 @@ struct DirectionLines {
 
 class LineCollector {
  public:
-  /// `interior` from interior_sides(), or empty: nothing is enclosed.
-  LineCollector(const Elements& elements, const ClusterTree* tree, double link_error, const std::vector<bool>& interior);
-  /// Takes the hits out of the bundle.
-  void collect(LineBundle& bundle, DirectionLines& out);
+  /// `interior` from interior_sides(), or empty: no organ is hollow. What `contact` says to be covered is enclosed too.
+  LineCollector(const Elements& elements, const ClusterTree* tree, double link_error, const std::vector<bool>& interior,
+                const GroundContact& contact);
+  /// Takes the hits out of the bundle, whose lines run along `direction`.
+  void collect(LineBundle& bundle, const Vec3& direction, DirectionLines& out);
   /// From now on all links are near.
   void forget_clusters() { tree_ = nullptr; }
   /// Lines on which each cell is enclosed; empty if nothing is.
   const std::vector<std::atomic<std::uint32_t>>& inside() const { return inside_; }
 
  private:
-  void mark_enclosed(const std::uint32_t* hit, std::uint32_t n, std::uint32_t* side);
+  void mark_enclosed(std::uint32_t cell, std::uint32_t& side);
   bool cluster_link(std::uint32_t low, std::uint32_t high, double distance, FarPair& pair) const;
 
   const Elements& e_;
   const ClusterTree* tree_;
   const float link_error_;
+  const GroundContact contact_;
   std::vector<std::uint8_t> interior_;              ///< [sides of cells]; empty if none is
   std::vector<std::atomic<std::uint32_t>> inside_;  ///< [cells] lines; sums of integers do not depend on the order of work
 };

@@ -372,7 +372,8 @@ LineLinks line_links(const Elements& e, const ClusterTree* tree, const SunReflec
   LineLinks links;
   std::vector<bool> interior;
   if (settings.method != RadiosityMethod::flat) interior = interior_sides(e, pitch, settings.seed, progress);
-  LineCollector collector(e, tree, settings.density.link_error, interior);
+  const GroundContact contact(e, pitch, settings.seed);
+  LineCollector collector(e, tree, settings.density.link_error, interior, contact);
   std::optional<HalfBuilder> builder[2];
   // bin by bin, so that equal far links meet and are merged early
   std::vector<Projection> projection(directions);
@@ -400,7 +401,7 @@ LineLinks line_links(const Elements& e, const ClusterTree* tree, const SunReflec
       if (progress.cancelled()) return;
       LineBundle& bundle = bundles.local();
       trace_lines(e.surface, projection[batch[i]], bundle, LinesKept::met);
-      collector.collect(bundle, found[i]);
+      collector.collect(bundle, projection[batch[i]].direction, found[i]);
       found[i].outside = outside_focus(e.surface, projection[batch[i]]);
     });
     progress.check();
@@ -415,7 +416,7 @@ LineLinks line_links(const Elements& e, const ClusterTree* tree, const SunReflec
         }
       }
       links.clustered = tree != nullptr;
-      for (auto& b : builder) b.emplace(e, tree, sun, skies.size(), !skies.empty() || !interior.empty());
+      for (auto& b : builder) b.emplace(e, tree, sun, skies.size(), !skies.empty() || !collector.inside().empty());
     }
     for (const auto& f : found) links.fragments += f.side.size();
     const auto add = [&](std::uint32_t h) {

@@ -43,8 +43,10 @@ struct LitElements {
   float sun(std::size_t t, std::size_t cell_side, std::size_t state, std::size_t band) const {
     const auto k = direct.sun_of_state[state];
     if (k == DirectLight::none) return 0.0f;
+    const auto irradiance = static_cast<float>(scene.states[state].sun->irradiance[band]);
+    if (!direct.wide_sun[k].empty()) return irradiance * direct.wide_sun[k][cell_side];
     const float cosine = cell_side & 1 ? -direct.sun_cosine[k][t] : direct.sun_cosine[k][t];
-    return static_cast<float>(scene.states[state].sun->irradiance[band]) * std::max(0.0f, cosine) * direct.sunlit[k][cell_side];
+    return irradiance * std::max(0.0f, cosine) * direct.sunlit[k][cell_side];
   }
   float lamps(std::size_t cell_side, std::size_t state, std::size_t band) const { return lamp.at(cell_side, state, band, bands); }
 

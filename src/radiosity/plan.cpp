@@ -5,6 +5,7 @@
 #include <optional>
 
 #include <sunfleck/radiosity/sensor_gather.hpp>
+#include <sunfleck/light/wide_sun.hpp>
 
 #include "cluster_tree.hpp"
 #include "direct_light.hpp"
@@ -75,11 +76,11 @@ class Planner {
       if (settings_.method == RadiosityMethod::direct || !anything_scatters(facets_))
         plan_.sky_fragments =
             whole(projected_area(elements_, nullptr) * density.sky_directions * 2.0 * density.sky_lines_per_organ / elements_.organ_area);
-      values += (skies_ + 1) * sides;
+      values += (plan_.sky_fragments > 0 ? skies_ : skies_ + 1) * sides;
     }
     for (const auto* sun : sources.suns) {
       plan_.sun_fragments += whole(projected_area(elements_, &sun->direction) * 2.0 * density.sun_lines_per_organ / elements_.organ_area);
-      values += sides + elements_.surface.size();
+      values += (sun->angular_diameter_deg > widest_narrow_sun_deg ? 2 : 1) * sides + elements_.surface.size();
     }
     sun_ = !sources.suns.empty();
     plan_.memory.emplace_back("direct", values * word);

@@ -56,7 +56,7 @@ class RadiositySolver {
     }
     watch = {};
     row_of_facet_.resize(facets_.size());
-    for (std::size_t t = 0; t < row_of_facet_.size(); ++t) row_of_facet_[lit_.elements.order[t]] = static_cast<std::uint32_t>(t);
+    for (std::size_t t = lit_.elements.order.size(); t-- > 0;) row_of_facet_[lit_.elements.order[t]] = static_cast<std::uint32_t>(t);
     write_light_rows(lit_, scattered_, row_of_facet_, sink_, report_.balance, progress_);
     if (settings_.method == RadiosityMethod::direct)  // what is not absorbed is not followed: it counts as scattered out of the scene
       for (auto& state : report_.balance)
@@ -99,10 +99,8 @@ class RadiositySolver {
 
   /// Radiosity of a side at a point of a facet, all columns.
   void radiosity_at(std::uint32_t facet, bool front, double u, double v, float* values) const {
-    const std::size_t t = row_of_facet_[facet];
-    const auto& s = lit_.elements.surface;
+    const auto [t, cell] = lit_.elements.place_of(row_of_facet_[facet], u, v);
     const auto& m = lit_.optics_of_row(t);
-    const std::uint32_t cell = s.first_cell[t] + cell_of(static_cast<float>(u), static_cast<float>(v), s.split[t]);
     for (std::size_t column = 0; column < lit_.columns(); ++column) {
       const std::size_t state = column / lit_.bands, band = column % lit_.bands;
       float light[2];

@@ -78,7 +78,7 @@ struct PathSampler::Impl {
     Vec3 direction(double u, double v) const;
   };
 
-  FacetPlane plane(CopyFacet facet) const { return FacetPlane(rays.corners(facet)); }
+  FacetPlane plane(CopyFacet facet) const { return FacetPlane(rays.met_corners(facet)); }
   std::size_t material(CopyFacet facet) const { return rays.material(facet) * bands; }
 
   /// Calls hit(state, on_front, irradiance factor: cosine to the sun, 0 < factor) for each state whose sun reaches the point.

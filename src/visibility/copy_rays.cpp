@@ -35,18 +35,10 @@ struct CopyRays::Impl {
     device.check(fmt::format("{} copies and {} facets of the ground", instance_copy.size(), scene.ground.size()));
   }
 
-  static Box box_of(const Surface& s, const Affine& map) {
-    Box b;
-    for (int i = 0; i < 8; ++i)
-      b.add(map.point(s.origin + Vec3{i & 1 ? s.focus.high.x : s.focus.low.x, i & 2 ? s.focus.high.y : s.focus.low.y,
-                                      i & 4 ? s.focus.high.z : s.focus.low.z}));
-    return b;
-  }
-
   Box extent() const {
     Box b;
     for (const auto& copy : scene.copies)
-      if (!scene.surfaces[copy.surface]->focus.empty()) b.add(box_of(*scene.surfaces[copy.surface], copy.map));
+      if (!scene.surfaces[copy.surface]->focus.empty()) b.add(copy_bounds(*scene.surfaces[copy.surface], copy.map));
     for (const auto& t : scene.ground)
       for (const auto& p : t) b.add(p);
     return b;
@@ -79,7 +71,7 @@ struct CopyRays::Impl {
     if (s.focus.empty()) return;
     if (!scene.periodic) return add_instance(c, Vec3{0.0});
     const auto& cell = *scene.periodic;
-    const Box b = box_of(s, scene.copies[c].map);
+    const Box b = copy_bounds(s, scene.copies[c].map);
     const auto low_x = std::ceil((cell.x_low - b.high.x) / cell.width()), high_x = std::floor((cell.x_high - b.low.x) / cell.width());
     const auto low_y = std::ceil((cell.y_low - b.high.y) / cell.depth()), high_y = std::floor((cell.y_high - b.low.y) / cell.depth());
     const double most = 4096 + 64.0 * static_cast<double>(scene.copies.size());
@@ -97,13 +89,19 @@ struct CopyRays::Impl {
       triangles.set(i, {t[0] - centre, t[1] - centre, t[2] - centre});
     }
     triangles.attach(top.get(), static_cast<unsigned>(instance_copy.size()));
+    for (const auto& t : scene.ground)
+      for (const auto& p : t) level = level && p.z == scene.ground[0][0].z;
+    if (level) return;
+    ground = device.new_scene(RTC_SCENE_FLAG_COMPACT);
+    triangles.attach(ground.get(), 0);
+    device.commit(ground.get());
   }
 
   /// The first thing between `from` and `to` along the ray; false if there is none.
-  bool segment(const Vec3& origin, const Vec3& d, double from, double to, RTCRayHit& r) const {
+  static bool segment(RTCScene in, const Vec3& origin, const Vec3& d, double from, double to, RTCRayHit& r) {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
-    return embree_meets(top.get(), context, embree_ray(origin, d, from, to), r);
+    return embree_meets(in, context, embree_ray(origin, d, from, to), r);
   }
 
   CopyHit found(const RTCRayHit& r, const Vec3& point, const Vec3& moved) const {
@@ -120,11 +118,11 @@ struct CopyRays::Impl {
     return hit;
   }
 
-  CopyHit trace(Vec3 p, Vec3 d, double skip, double range) const {
+  CopyHit trace(RTCScene in, Vec3 p, Vec3 d, double skip, double range) const {
     p -= centre;
     RTCRayHit r;
     if (!scene.periodic) {
-      if (!segment(p, d, skip, range, r)) return {};
+      if (!segment(in, p, d, skip, range, r)) return {};
       return found(r, p + static_cast<double>(r.ray.tfar) * d, Vec3{0.0});
     }
     if (std::fabs(d.z) < least_slope) d = glm::normalize(Vec3{d.x, d.y, d.z < 0 ? -least_slope : least_slope});
@@ -139,7 +137,7 @@ struct CopyRays::Impl {
       const double to_end = d.z > 0 ? (high - p.z) / d.z : (low - p.z) / d.z;
       const double step = std::max(0.0, std::min(to_x, to_y)), overlap = 1e-6 * (1.0 + step);
       const double to = std::min({step + overlap, to_end + overlap, range - travelled});
-      if (to > from && segment(p, d, from, to, r)) return found(r, p + static_cast<double>(r.ray.tfar) * d, Vec3{0.0});
+      if (to > from && segment(in, p, d, from, to, r)) return found(r, p + static_cast<double>(r.ray.tfar) * d, Vec3{0.0});
       if (to_end <= step || travelled + step >= range) return {};
       p += step * d;
       if (to_x <= to_y) p.x += d.x > 0 ? -width : width;
@@ -156,17 +154,37 @@ struct CopyRays::Impl {
   EmbreeDevice device{EmbreeDevice::Trees::same_for_any_threads};
   std::vector<EmbreeScenePointer> parts;
   EmbreeScenePointer top;
+  EmbreeScenePointer ground;  ///< alone, if it is not level
+  bool level = true;
   Vec3 centre{0.0};
   Box box;
   std::vector<std::uint32_t> instance_copy;
   std::vector<Vec3> instance_moved;
 };
 
+Box copy_bounds(const Surface& s, const Affine& map) {
+  Box b;
+  if (s.focus.empty()) return b;
+  for (int i = 0; i < 8; ++i)
+    b.add(map.point(s.origin + Vec3{i & 1 ? s.focus.high.x : s.focus.low.x, i & 2 ? s.focus.high.y : s.focus.low.y,
+                                    i & 4 ? s.focus.high.z : s.focus.low.z}));
+  return b;
+}
+
 CopyRays::CopyRays(const CopyScene& scene) : impl_(std::make_unique<Impl>(scene)) {}
 CopyRays::~CopyRays() = default;
 
 CopyHit CopyRays::first_hit(const Vec3& origin, const Vec3& direction, double skip, double range) const {
-  return impl_->trace(origin, direction, skip, range);
+  return impl_->trace(impl_->top.get(), origin, direction, skip, range);
+}
+
+CopyHit CopyRays::first_ground(const Vec3& origin, const Vec3& direction, double range) const {
+  if (impl_->ground) return impl_->trace(impl_->ground.get(), origin, direction, 0.0, range);
+  if (impl_->scene.ground.empty() || !(direction.z < 0.0)) return {};
+  const double way = (impl_->scene.ground[0][0].z - origin.z) / direction.z, last = 0.5 * impl_->scene.ground_gap / direction.z;
+  if (!(way >= 0.0 && way <= range)) return {};
+  const CopyHit hit = first_hit(origin + (way + last) * direction, direction, 0.0);
+  return hit.kind == CopyHit::Kind::ground ? hit : CopyHit{};
 }
 
 void CopyRays::set_hidden(const std::vector<std::uint32_t>& copies, bool hidden) {
@@ -185,7 +203,7 @@ void CopyRays::set_hidden(const std::vector<std::uint32_t>& copies, bool hidden)
 }
 
 bool CopyRays::occluded(const Vec3& origin, const Vec3& direction, double skip, double range) const {
-  return impl_->trace(origin, direction, skip, range).kind != CopyHit::Kind::nothing;
+  return impl_->trace(impl_->top.get(), origin, direction, skip, range).kind != CopyHit::Kind::nothing;
 }
 
 std::size_t CopyRays::bytes() const {

@@ -29,7 +29,7 @@ bool endless(const RayScene& rays, std::size_t band, Vec3 p, Vec3 d, RandomStrea
     facet = hit.where();
     const auto& m = rays.materials()[rays.material(facet)];
     if (absorbs(m, band, hit.front)) return false;
-    const Triangle c = rays.corners(facet);
+    const Triangle c = rays.met_corners(facet);
     p = c[0] + hit.u * (c[1] - c[0]) + hit.v * (c[2] - c[0]);
     const bool reflected = random.next() >= double{m.transmittance[band]};
     const Vec3 n = glm::normalize(area_vector(c)) * (hit.front == reflected ? 1.0 : -1.0);

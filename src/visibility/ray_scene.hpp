@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include <sunfleck/visibility/ground_gap.hpp>
 #include <sunfleck/visibility/rays.hpp>
 
 #include "visibility/embree_scene.hpp"
@@ -66,7 +67,12 @@ struct RayScene::Impl {
   Vec3 local(const Vec3& p) const { return (p - origin) * scale; }
   Triangle local_corners(CopyFacet facet, CellImage image) const;
   Triangle primitive_corners(std::size_t primitive) const;  ///< of an own primitive: where its image lies in the cell
-  Triangle corners(CopyFacet f) const { return flat ? flat->corners[f.facet] : rows->corners(f); }
+  /// As rays meet it: the ground lies lower than it is given.
+  Triangle corners(CopyFacet f) const {
+    const bool ground = flat ? f.facet >= flat->plant_facets : f.copy == own_copy;
+    return ground ? gap.lowered(given_corners(f)) : given_corners(f);
+  }
+  Triangle given_corners(CopyFacet f) const { return flat ? flat->corners[f.facet] : rows->corners(f); }
   /// Facets that are triangles of the scene itself: all, or those of the ground.
   CopyFacet own(std::uint32_t facet) const { return {own_copy, facet}; }
   bool has_area(std::uint32_t own_facet) const;
@@ -107,6 +113,7 @@ struct RayScene::Impl {
   std::uint32_t own_copy;
   std::uint32_t own_count;
   Box bounds;
+  GroundGap gap;
   std::optional<PeriodicCell> cell;
   Vec3 origin{0.0};
   double scale = 1.0;  // a power of two, so that the scale of a scene changes no rounding

@@ -128,11 +128,14 @@ void RayScene::Impl::place() {
   periodic = cell.has_value();
   if (flat) {
     bounds = flat->bounds;
+    gap = GroundGap(*flat);
   } else {
     for (std::uint32_t c = 0; c < own_copy; ++c) bounds.add(mapped(plant_of(c).box, rows->placed().copies[c].map));
+    const Box plants_box = bounds;
     for (std::uint32_t f = 0; f < own_count; ++f)
       if (has_area(f))
         for (const auto& p : rows->placed().ground[f]) bounds.add(p);
+    gap = GroundGap(plants_box, bounds);
   }
   if (bounds.empty()) return;
   Box extent = bounds;
@@ -146,7 +149,7 @@ void RayScene::Impl::place() {
     origin.x = extent.low.x, origin.y = extent.low.y;
     width = cell->width() * scale, depth = cell->depth() * scale;
   }
-  box = {local(bounds.low) - slack, local(bounds.high) + slack};
+  box = {local(bounds.low - Vec3{0.0, 0.0, gap.metres()}) - slack, local(bounds.high) + slack};
 }
 
 void RayScene::Impl::list_primitives() {

@@ -192,6 +192,9 @@ std::uint64_t RayScene::plant_facets() const {
   return impl_->flat ? impl_->flat->plant_facets : impl_->rows->placed().first_ground_facet;
 }
 Triangle RayScene::corners(CopyFacet facet) const {
+  return impl_->given_corners(facet);
+}
+Triangle RayScene::met_corners(CopyFacet facet) const {
   return impl_->corners(facet);
 }
 std::uint32_t RayScene::material(CopyFacet facet) const {

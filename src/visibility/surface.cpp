@@ -3,6 +3,7 @@
 #include <tbb/parallel_for.h>
 
 #include <sunfleck/core/memory.hpp>
+#include <sunfleck/visibility/ground_gap.hpp>
 
 namespace sunfleck {
 
@@ -23,22 +24,26 @@ double Surface::longest_way(const Vec3& direction) const {
 }
 
 Surface make_surface(const FacetScene& scene, const std::vector<std::uint32_t>& order, const std::vector<std::uint16_t>& split,
-                     bool ground_is_flat) {
+                     const RowPieces& pieces, bool ground_is_flat) {
   Surface s;
   const std::size_t n = order.size();
-  s.origin = scene.bounds.empty() ? Vec3{0.0} : scene.bounds.centre();
+  const Box plants = plant_bounds(scene);
+  const Box& precise = plants.empty() ? scene.bounds : plants;  // what single precision serves best
+  const GroundGap gap(scene);
+  s.origin = precise.empty() ? Vec3{0.0} : precise.centre();
   s.periodic = scene.periodic;
+  s.ground_gap = gap.metres();
   for (auto& c : s.corner) c.resize(n);
   for (auto& c : s.normal) c.resize(n);
   s.split.resize(n);
   s.cell_area.resize(n);
   s.first_cell.assign(n + 1, 0);
   s.focus_count = n;
-  const auto plants = scene.area.begin() + static_cast<std::ptrdiff_t>(scene.plant_facets);
-  if (ground_is_flat && std::any_of(scene.area.begin(), plants, [](float area) { return area > 0.0f; }))
+  if (ground_is_flat && !plants.empty())
     while (s.focus_count > 0 && order[s.focus_count - 1] >= scene.plant_facets) --s.focus_count;
   tbb::parallel_for(std::size_t{0}, n, [&](std::size_t i) {
-    const auto& t = scene.corners[order[i]];
+    const Triangle& given = pieces.corners_of(i, scene.corners[order[i]]);
+    const Triangle t = order[i] < scene.plant_facets ? given : gap.lowered(given);
     for (int k = 0; k < 3; ++k)
       for (int axis = 0; axis < 3; ++axis) s.corner[3 * k + axis][i] = static_cast<float>(t[k][axis] - s.origin[axis]);
     const Vec3 a = area_vector(t);
@@ -55,7 +60,7 @@ Surface make_surface(const FacetScene& scene, const std::vector<std::uint32_t>& 
     if (i < s.focus_count && s.split[i] > 0)
       for (const auto& p : scene.corners[order[i]]) s.focus.add(p - s.origin);
   }
-  const Vec3 size = scene.bounds.size();
+  const Vec3 size = precise.size();
   s.depth_tolerance = 1e-6 * std::max({size.x, size.y, size.z});
   return s;
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <sunfleck/radiosity/solve.hpp>
+#include <sunfleck/visibility/ground_pieces.hpp>
 #include <sunfleck/visibility/surface.hpp>
 
 #include <sunfleck/radiosity/cluster_order.hpp>
@@ -14,11 +15,14 @@ namespace sunfleck {
 /// Facets in the order of the cluster tree, cut into cells (large facets) and gathered into elements (small facets of one organ and
 /// one material; organs smaller than half an element share one with neighbours).
 struct Elements {
-  std::vector<std::uint32_t> order;  ///< [n] facet of each row of the surface
+  std::vector<std::uint32_t> order;  ///< [rows] facet of each row of the surface; several rows, one after the other, if it is cut in pieces
+  RowPieces pieces;                  ///< of facets of the ground
+  GroundPieceIndex piece_index;      ///< rows of the pieces
+  std::size_t plant_facets = 0;      ///< facets from here on are of the ground
   ClusterOrder tree;                 ///< of organs
   Surface surface;
   std::vector<std::uint32_t> element_of_cell;  ///< [cells]
-  std::vector<std::uint32_t> organ_of_row;     ///< [n] row of FacetScene::organs
+  std::vector<std::uint32_t> organ_of_row;     ///< [rows] row of FacetScene::organs
   std::vector<std::uint32_t> row_of_cell;      ///< [cells] row of the surface
   std::vector<std::uint32_t> first_cell;       ///< [elements + 1] into `cells`
   std::vector<std::uint32_t> cells;            ///< cells of each element
@@ -28,11 +32,34 @@ struct Elements {
   double element_area = 0;                     ///< area aimed at [m^2]
 
   std::size_t size() const { return area.size(); }
+  /// The row and cell of a point of a facet, whose first row is given; u, v as in RayHit.
+  struct Place {
+    std::uint32_t row, cell;
+  };
+  Place place_of(std::uint32_t first_row, double u, double v) const;
+  /// Calls f(cell, its share of the facet's area) for the cells of a facet, whose first row is given.
+  template <class F>
+  void for_cells_of_facet(std::size_t first_row, const F& f) const {
+    const auto& s = surface;
+    std::size_t end = first_row + 1;
+    while (!pieces.of_row.empty() && end < order.size() && order[end] == order[first_row]) ++end;
+    double whole = 0.0;
+    if (end > first_row + 1)
+      for (std::size_t t = first_row; t < end; ++t) whole += static_cast<double>(s.cell_area[t]) * (s.first_cell[t + 1] - s.first_cell[t]);
+    for (std::size_t t = first_row; t < end; ++t) {
+      const std::uint32_t begin = s.first_cell[t], last = s.first_cell[t + 1];
+      const float share =
+          end == first_row + 1 ? 1.0f / static_cast<float>(last - begin) : static_cast<float>(static_cast<double>(s.cell_area[t]) / whole);
+      for (std::uint32_t c = begin; c < last; ++c) f(c, share);
+    }
+  }
+
   std::size_t bytes() const;
 };
 
-/// Method flat: one element a facet. Else facets of an organ are gathered, and large facets cut, to about the aimed element area; flat
-/// ground is cut only near plants. Nothing here depends on the light.
+/// Method flat: one element a facet. Else facets of an organ are gathered, and large facets cut, to about the aimed element area, which is
+/// smaller where organs are wider than the periodic cell; flat ground is cut only near plants. Facets of the ground too wide for that, and
+/// plants' facets wider than a fourth of a periodic cell, are cut with method flat too. Nothing here depends on the light.
 Elements make_elements(const Scene& scene, const FacetScene& facets, const RadiositySettings& settings);
 
 }  // namespace sunfleck

@@ -18,11 +18,15 @@ struct SurfaceCopy {
   Affine map;
 };
 
+/// The box about a copy's box, in the world [m].
+Box copy_bounds(const Surface& surface, const Affine& map);
+
 /// Surfaces, where they stand, and the ground. Copies may cross the border of a periodic cell.
 struct CopyScene {
   std::vector<const Surface*> surfaces;
   std::vector<SurfaceCopy> copies;
-  std::vector<Triangle> ground;  ///< world [m]
+  std::vector<Triangle> ground;  ///< as rays meet it, lowered by ground_gap; world [m]
+  double ground_gap = 0.0;       ///< see GroundGap [m]
   std::optional<PeriodicCell> periodic;
 };
 
@@ -48,6 +52,8 @@ class CopyRays {
 
   /// The first thing farther than `skip` and within `range` [m] along the unit vector `direction`.
   CopyHit first_hit(const Vec3& origin, const Vec3& direction, double skip, double range = std::numeric_limits<double>::infinity()) const;
+  /// The ground within `range` [m], from the origin on and whatever else is there: what lies on it starts no farther away than `skip`.
+  CopyHit first_ground(const Vec3& origin, const Vec3& direction, double range) const;
   /// Is there anything within `range` [m]?
   bool occluded(const Vec3& origin, const Vec3& direction, double skip, double range) const;
   /// Rays no longer meet these copies, or meet them again. Not while rays are asked.

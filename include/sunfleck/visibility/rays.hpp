@@ -48,7 +48,7 @@ inline constexpr CopyFacet nowhere{0, no_facet};
 ///
 /// Copies of a FacetRows are instances of their plant's geometry, which is kept once, about the plant's middle: memory is that of the
 /// plants, the ground and some 500 bytes a copy. Facets are then named by copy (CopyFacet). Only facets of the same copy are stacked: where
-/// whole copies lie in each other, or plants in the plane of the ground, single precision decides which is met first.
+/// whole copies lie in each other, single precision decides which is met first.
 class RayScene {
  public:
   /// Throws InputError if facets reach over absurdly many periodic cells (a mistake of units), Error if memory does not suffice.
@@ -78,6 +78,8 @@ class RayScene {
   std::uint64_t facet_count() const;
   std::uint64_t plant_facets() const;  ///< rows below are of plants, the others of the ground
   Triangle corners(CopyFacet facet) const;
+  /// As rays meet it: the ground lies lower than it is given, see GroundGap. Rays that go on from a facet start on these.
+  Triangle met_corners(CopyFacet facet) const;
   std::uint32_t material(CopyFacet facet) const;
   const std::vector<Optics>& materials() const;
   /// Of facets with area; of copies the boxes about their plants' boxes.

@@ -23,6 +23,7 @@ struct Surface {
   std::size_t focus_count = 0;               ///< triangles [0, focus_count) span the focus box; the others (flat ground) may lie outside
   Box focus;                                 ///< relative to origin: lines are drawn through this box only
   double depth_tolerance = 0.0;              ///< fragments closer than this along a line coincide [m]
+  double ground_gap = 0.0;                   ///< the ground's corners are this much lower than it is given [m], see GroundGap
   std::optional<PeriodicCell> periodic;      ///< in world coordinates
 
   std::size_t size() const { return split.size(); }
@@ -41,9 +42,20 @@ inline std::uint32_t cell_of(float u, float v, int k) {  // without branches, so
   return static_cast<std::uint32_t>(j * (2 * k - j) + 2 * i + upper);
 }
 
-/// Prepares facets of a scene in the order given. `split[i]` belongs to facet `order[i]`; facets of the ground must come last when
-/// `ground_is_flat`, and are then left out of the focus if any plant has an area. Zero-area facets get split 0.
+/// Rows that are pieces of a facet, where some are.
+struct RowPieces {
+  static constexpr std::uint32_t whole = 0xffffffffu;
+  std::vector<std::uint32_t> of_row;  ///< [rows] row of `corners`, or whole; empty: all are
+  std::vector<Triangle> corners;      ///< world [m]
+
+  const Triangle& corners_of(std::size_t row, const Triangle& facet) const {
+    return of_row.empty() || of_row[row] == whole ? facet : corners[of_row[row]];
+  }
+};
+
+/// Prepares facets of a scene in the order given. `split[i]` belongs to row i, which is facet `order[i]` or a piece of it; facets of the
+/// ground must come last when `ground_is_flat`, and are then left out of the focus if any plant has an area. Zero-area facets get split 0.
 Surface make_surface(const FacetScene& scene, const std::vector<std::uint32_t>& order, const std::vector<std::uint16_t>& split,
-                     bool ground_is_flat);
+                     const RowPieces& pieces, bool ground_is_flat);
 
 }  // namespace sunfleck
