@@ -37,7 +37,7 @@ GroundContact::GroundContact(const Elements& e, double pitch, std::uint64_t seed
   elements_ = &e;
   LineBundle bundle;
   const Vec3 up{0.0, 0.0, 1.0};
-  trace_lines(e.surface, project_set_member(e.surface, up, 0, pitch, mix(seed, contact_stream)), bundle);
+  trace_lines(e.surface, project_set_member(e.surface, up, 0, pitch, mix(seed, contact_stream)), bundle, LinesKept::met);
   bool found = false;
   for (std::size_t q = 0; q + 1 < bundle.start.size() && !found; ++q)
     each_covered(bundle, up, bundle.start[q], bundle.start[q + 1], [&](std::uint32_t) { found = true; });
