@@ -22,8 +22,7 @@ std::uint64_t copies_of(const SceneCounts& counts) {
 
 std::uint64_t layout_bytes(const SceneCounts& counts) {
   const std::uint64_t of_writer = name + 3 * row;  // an organ of the ground has a name of its own
-  return copies_of(counts) * (sizeof(PlacedCopy) + 2 * name) + counts.ground_facets * (sizeof(Triangle) + row) +
-         counts.ground_organs * (name + of_writer);
+  return copies_of(counts) * (sizeof(PlacedCopy) + 2 * name) + counts.ground_organs * of_writer;
 }
 
 std::uint64_t expanded_bytes(const SceneCounts& counts) {

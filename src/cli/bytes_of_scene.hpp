@@ -9,7 +9,7 @@
 namespace sunfleck {
 
 std::uint64_t copies_of(const SceneCounts& counts);
-/// Copies with their names, cells of the ground with theirs (PlacedScene, and the tables of the writer).
+/// Copies with their names (PlacedScene), names of the ground's cells (the tables of the writer).
 std::uint64_t layout_bytes(const SceneCounts& counts);
 /// Every copy and the ground written out (FacetScene).
 std::uint64_t expanded_bytes(const SceneCounts& counts);

@@ -283,7 +283,7 @@ Plan plan_of(const Scene& scene, const MethodChoice& choice, Progress& progress,
   }
   const bool all_open = scene.solve.only.empty() && scene.solve.stop_at.empty();
   const std::uint64_t layout = all_open ? layout_bytes(plan.counts) : 0, file = all_open ? row_bytes(scene, plan.counts) : 0;
-  if (all_open) plan.memory.push_back({"layout", "copies, ground cells, and their names", layout});
+  if (all_open) plan.memory.push_back({"layout", "copies, and names of them and of ground cells", layout});
   if (all_open) plan.memory.push_back({"file", "sums and rows on their way into the file", file});
   plan.work = {{"facets", "facets", facets},
                {"organs", "organs", whole ? placed.organs : plan.counts.organs},
