@@ -52,12 +52,9 @@ OverdueStop::OverdueStop(std::chrono::milliseconds patience) : patience_(patienc
 
 OverdueStop::~OverdueStop() {
   pipe_of_current.store(-1);
-  if (thread_.joinable()) {
-    while (::write(write_, &end, 1) < 0 && errno == EINTR) {
-    }
-    thread_.join();
-  }
-  if (read_ >= 0) ::close(read_), ::close(write_);
+  if (write_ >= 0) ::close(write_);  // which the watcher reads as the end: closing cannot fail to be heard, as writing can
+  if (thread_.joinable()) thread_.join();
+  if (read_ >= 0) ::close(read_);
 }
 
 void OverdueStop::asked() noexcept {
