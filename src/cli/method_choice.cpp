@@ -10,6 +10,7 @@
 #include <sunfleck/instantiation/plan.hpp>
 #include <sunfleck/light/wide_sun.hpp>
 #include <sunfleck/policy/policy_toml.hpp>
+#include <sunfleck/scene/counts.hpp>
 #include <sunfleck/scene/extent.hpp>
 
 #include "cli/text_units.hpp"
@@ -78,8 +79,12 @@ MethodReason default_method(const Scene& scene, Quality quality, Progress& progr
   const auto plan = plan_sharing(scene, place(scene, most_copies_in_plan), settings, progress);
   if (plan.tangled > much_tangled)
     return {"clustering",
-            fmt::format("{:.1f} % of what is seen inside plants is hidden by others that reach into them: too much for instantiation",
+            fmt::format("{:.1f} % of what is seen inside plants is hidden by others that reach into them, or by the ground: too much for "
+                        "instantiation",
                         100 * plan.tangled)};
+  if (plan.merged_copies > 0 && !repeats(count(scene).plant_facets, plan.unique_facets))
+    return {"clustering",
+            fmt::format("{} copies reach into each other, and too little else repeats for instantiation to pay", plan.merged_copies)};
   return {"instantiation", fmt::format("{} share {} {}", counted(plan.copies, "copy", "copies"), plan.originals,
                                        plan.originals == 1 ? "original" : "originals")};
 }

@@ -5,8 +5,8 @@
 
 namespace sunfleck {
 
-MemberSurroundings::MemberSurroundings(const Members& members, const PlacedScene& placed)
-    : members_(members), scene_(members.copies), maps_(members.maps), placed_(placed), rays_(members.copies) {
+MemberSurroundings::MemberSurroundings(const Members& members)
+    : members_(members), scene_(members.copies), maps_(members.maps), rays_(members.copies) {
   Box extent;
   double organ = std::numeric_limits<double>::max();
   for (std::size_t m = 0; m < maps_.size(); ++m) {
@@ -25,7 +25,7 @@ RayEnd MemberSurroundings::end_of(const CopyHit& hit, const Vec3& d) const {
   RayEnd end;
   if (hit.kind == CopyHit::Kind::nothing) return end;
   if (hit.kind == CopyHit::Kind::ground) {
-    end.target = RayEnd::ground_bit | (hit.index < members_.ground_facets ? hit.index : near_facet(hit.point));
+    end.target = RayEnd::ground_bit | hit.index;
     end.field = glm::dot(area_vector(scene_.ground[hit.index]), d) < 0 ? 0 : 1;
     return end;
   }
@@ -34,19 +34,6 @@ RayEnd MemberSurroundings::end_of(const CopyHit& hit, const Vec3& d) const {
   end.target = members_.is_far(hit.index) ? members_.stand_in[hit.index - members_.size()] : hit.index;
   end.field = original.coarse->field_at(map.point_back(hit.point - hit.image) - original.elements.surface.origin, map.direction_back(-d));
   return end;
-}
-
-/// The part of the near ground that stands for a point of the far one: the near field is laid out again and again.
-std::uint32_t MemberSurroundings::near_facet(const Vec3& point) const {
-  const auto& field = placed_.near_field;
-  double x = (point.x - field[0]) / (field[2] - field[0]), y = (point.y - field[1]) / (field[3] - field[1]);
-  x = (x - std::floor(x)) * placed_.near_cells[0];
-  y = (y - std::floor(y)) * placed_.near_cells[1];
-  const auto i = std::min(static_cast<std::uint32_t>(x), placed_.near_cells[0] - 1),
-             j = std::min(static_cast<std::uint32_t>(y), placed_.near_cells[1] - 1);
-  const std::uint32_t triangle = 2 * (j * placed_.near_cells[0] + i) + (x - i < y - j ? 1 : 0), first = members_.ground_parts[triangle],
-                      parts = members_.ground_parts[triangle + 1] - first;
-  return first + std::min(static_cast<std::uint32_t>((x - i) * parts), parts - 1);
 }
 
 RayEnd MemberSurroundings::look(std::uint32_t m, const std::array<float, 3>& point, const Vec3& d) const {
@@ -67,6 +54,7 @@ std::uint32_t MemberSurroundings::stands_between(std::uint32_t m, const std::arr
   const double length = glm::length(b - a);
   if (length <= 2 * skip_) return none;
   const CopyHit hit = rays_.first_hit(a, (b - a) / length, skip_, length - skip_);
+  if (hit.kind == CopyHit::Kind::ground) return the_ground;
   if (hit.kind != CopyHit::Kind::copy) return none;
   if (hit.index != m) return hit.index;
   // its own body, grazed within rounding, is met on the stretch itself; an image of it is met elsewhere
@@ -75,6 +63,42 @@ std::uint32_t MemberSurroundings::stands_between(std::uint32_t m, const std::arr
   const Vec3 off = maps_[m].point_back(hit.point - hit.image) - from;
   const Vec3 beside = off - along * (glm::dot(off, along) / glm::dot(along, along));
   return glm::length(beside) * maps_[m].scale < 4 * skip_ ? none : m;
+}
+
+double MemberSurroundings::way_through(std::uint32_t m, const Vec3& image, const Vec3& from, const Vec3& d) const {
+  const auto& surface = members_.original_of(m).elements.surface;
+  const Vec3 p = maps_[m].point_back(from - image) - surface.origin, along = maps_[m].direction_back(d) / maps_[m].scale;
+  double first = 0, last = std::numeric_limits<double>::infinity();
+  for (int axis = 0; axis < 3; ++axis) {
+    const double low = surface.focus.low[axis] - p[axis], high = surface.focus.high[axis] - p[axis];
+    if (along[axis] == 0.0) {
+      if (low > 0 || high < 0) return -1;
+      continue;
+    }
+    first = std::max(first, std::min(low / along[axis], high / along[axis]));
+    last = std::min(last, std::max(low / along[axis], high / along[axis]));
+  }
+  return first <= last ? last : -1;
+}
+
+std::uint32_t MemberSurroundings::inner_face(std::uint32_t m, const std::array<float, 3>& point, const Vec3& d) const {
+  constexpr int most_hits = 1000;
+  const auto& surface = members_.original_of(m).elements.surface;
+  const Vec3 from = maps_[m].point(surface.origin + Vec3{point[0], point[1], point[2]});
+  const CopyHit met = rays_.first_hit(from, d, skip_);
+  if (met.kind != CopyHit::Kind::copy) return none;
+  const auto image_of = [](const Vec3& at, const CopyHit& hit) { return at - (hit.point - hit.image); };  // without wraps
+  const Vec3 image = image_of(from + met.distance * d, met);
+  if (met.index == m && glm::length(image) <= 4 * skip_) return none;
+  const double way = way_through(met.index, image, from, -d);
+  double gone = 0;
+  for (int k = 0; k < most_hits && gone < way; ++k) {
+    const CopyHit behind = rays_.first_hit(from - gone * d, -d, skip_, way - gone + skip_);
+    if (behind.kind != CopyHit::Kind::copy) return none;
+    gone += behind.distance;
+    if (behind.index == met.index && glm::length(image_of(from - gone * d, behind) - image) <= 4 * skip_) return met.index;
+  }
+  return none;
 }
 
 RayEnd MemberSurroundings::look_from_ground(const Vec3& point, const Vec3& d) const {

@@ -29,15 +29,18 @@ struct RayEnd {
 /// Rays through a scene of members.
 class MemberSurroundings {
  public:
-  /// Both must outlive it.
-  MemberSurroundings(const Members& members, const PlacedScene& placed);
+  /// `members` must outlive it.
+  explicit MemberSurroundings(const Members& members);
 
   /// From a point of member `m`, given in its original's surface coordinates, along the world direction `d`.
   RayEnd look(std::uint32_t m, const std::array<float, 3>& point, const Vec3& d) const;
   /// Which other member, or image of a member, stands between two points of member `m` (in its surface coordinates) that see each other
-  /// inside its original; none = nothing, m = an image of itself.
-  static constexpr std::uint32_t none = 0xffffffffu;
+  /// inside its original; none = nothing, m = an image of itself, the_ground = the ground.
+  static constexpr std::uint32_t none = 0xffffffffu, the_ground = 0xfffffffeu;
   std::uint32_t stands_between(std::uint32_t m, const std::array<float, 6>& segment) const;
+  /// The member whose inner face is met from a point of member `m` along the world direction `d`: one that stands behind the point as well,
+  /// so that its field, which tells what leaves it, is not what is met. none = none is.
+  std::uint32_t inner_face(std::uint32_t m, const std::array<float, 3>& point, const Vec3& d) const;
   /// From a world point of a facet of the ground, lifted off the side that looks by ground_lift(): below what lies there.
   RayEnd look_from_ground(const Vec3& point, const Vec3& d) const;
   /// Is the sun hidden from such a point?
@@ -49,13 +52,12 @@ class MemberSurroundings {
 
  private:
   RayEnd end_of(const CopyHit& hit, const Vec3& d) const;
-
-  std::uint32_t near_facet(const Vec3& point) const;
+  /// How far along a ray the box about a member, moved by `image`, ends; negative where the ray meets it nowhere.
+  double way_through(std::uint32_t m, const Vec3& image, const Vec3& from, const Vec3& d) const;
 
   const Members& members_;
   const CopyScene& scene_;
   const std::vector<Similarity>& maps_;
-  const PlacedScene& placed_;
   CopyRays rays_;
   double skip_ = 0;  ///< [m] rays begin so far from where they start
 };

@@ -4,10 +4,10 @@
 #include <map>
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
 
 #include <sunfleck/core/memory.hpp>
 #include <sunfleck/core/sampling.hpp>
+#include <sunfleck/instantiation/plan.hpp>
 #include <sunfleck/plant/describe.hpp>
 #include <sunfleck/radiosity/interior.hpp>
 #include <sunfleck/scene/facets.hpp>
@@ -15,13 +15,17 @@
 #include <sunfleck/visibility/ground_pieces.hpp>
 
 #include "instantiation/coincident.hpp"
+#include "instantiation/organ_count.hpp"
 #include "instantiation/member_surroundings.hpp"
+#include "instantiation/tangles.hpp"
 
 namespace sunfleck {
 
 namespace {
 
 constexpr double tangled_share = 0.01;  // of lines inside a copy that meet another: from here on they are solved together
+constexpr double crowded_share = 0.05;  // of lines inside a copy that meet others: from here on it is solved together with all of them
+constexpr int most_rounds = 3;          // of putting together
 constexpr std::uint64_t most_merged_facets = 300'000;
 constexpr std::uint64_t coarse_stream = 0x7d3f1c5b2e8a9604ULL;
 
@@ -35,7 +39,7 @@ OperatorDensity coarse_density(const Scene& scene, const Original& original, Ope
 }
 
 OriginalLight original_light(const Scene& scene, const Approximation& approximation, const Original& original, double elements_per_organ,
-                             const OperatorDensity& density, std::uint64_t seed, Progress& progress) {
+                             const OperatorDensity& density, double fewest_organs, std::uint64_t seed, Progress& progress) {
   Scene own;
   own.file = scene.file;
   own.bands = scene.bands;
@@ -57,11 +61,13 @@ OriginalLight original_light(const Scene& scene, const Approximation& approximat
   const FacetScene facets = expand(own);
   RadiositySettings settings;
   settings.density = density_of(Quality::standard);
-  settings.density.elements_per_organ = elements_per_organ;
+  const double finer = times_finer(facets, fewest_organs);
+  settings.density.elements_per_organ = elements_per_organ * finer;
   out.elements = make_elements(own, facets, settings);
   out.facet_material = facets.optics;
-  const double pitch = std::sqrt(0.5 * out.elements.organ_area / density.lines_per_organ);
+  const double pitch = std::sqrt(0.5 * out.elements.organ_area / finer / density.lines_per_organ);
   out.interior = interior_of_cells(out.elements, interior_sides(out.elements, pitch, seed, progress));
+  out.elements.organ_area /= finer;
   // no one asks for these any more
   out.elements.tree = {};
   out.elements.organ_of_row = {};
@@ -153,10 +159,12 @@ Members with_light(const Scene& scene, const PlacedScene& placed, Approximation 
   out.found = std::move(found);
   out.stand_in = find_stand_ins(out.found);
   out.originals.reserve(out.found.originals.size() + 1);  // `copies` points into it, and one more comes when a plant is opened
+  const auto fewest = fewest_organs(scene, out.found);
   for (std::size_t o = 0; o < out.found.originals.size(); ++o) {
     progress.check();
     progress.fraction("originals", static_cast<double>(o) / static_cast<double>(out.found.originals.size()));
-    out.originals.push_back(original_light(scene, out.approximation, out.found.originals[o], elements_per_organ, coarse, seed, progress));
+    out.originals.push_back(
+        original_light(scene, out.approximation, out.found.originals[o], elements_per_organ, coarse, fewest[o], seed, progress));
     auto& light = out.originals.back();
     light.coarse = std::make_unique<LineOperator>(light.elements, light.interior, coarse_density(scene, out.found.originals[o], coarse),
                                                   mix(seed, coarse_stream, o), progress);
@@ -169,47 +177,20 @@ Members with_light(const Scene& scene, const PlacedScene& placed, Approximation 
   }
   out.copies.periodic = scene.periodic;
   split_ground(placed.partial ? placed.near_ground : placed.ground.written_out(), out);
-  out.ground_facets = out.copies.ground.size();
   out.copies.ground.insert(out.copies.ground.end(), placed.far_ground.begin(), placed.far_ground.end());
   lower_ground(out);
   return out;
 }
 
-/// Of the lines inside member `a`, the share that member `b` stands in (b = a: an image of it).
-struct Tangle {
-  double share;
-  std::uint32_t a, b;
-};
-
-std::vector<Tangle> tangles(const Members& members, const MemberSurroundings& around, const Progress& progress) {
-  std::vector<std::vector<Tangle>> found(members.size());
-  tbb::parallel_for(std::uint32_t{0}, static_cast<std::uint32_t>(members.size()), [&](std::uint32_t m) {
-    if (progress.cancelled()) return;
-    const auto& segments = members.coarse_of(m).segments;
-    std::map<std::uint32_t, std::uint32_t> met;
-    for (const auto& segment : segments)
-      if (const auto j = around.stands_between(m, segment); j != MemberSurroundings::none && j < members.size()) ++met[j];
-    for (const auto& [j, n] : met) found[m].push_back({static_cast<double>(n) / static_cast<double>(segments.size()), m, j});
-  });
-  progress.check();
-  std::vector<Tangle> out;
-  for (const auto& list : found) out.insert(out.end(), list.begin(), list.end());
-  return out;
-}
-
-double mean_share(const Members& members, const std::vector<Tangle>& list) {
-  double sum = 0;
-  for (const auto& t : list) sum += t.share;
-  return members.size() > 0 ? sum / static_cast<double>(members.size()) : 0.0;
-}
-
-/// Members to put together, the most tangled first.
+/// Members to put together, the most tangled first: pairs that reach into each other, and one that is crowded with all that stand in it.
 std::vector<std::vector<std::uint32_t>> groups_of(const Members& members, std::vector<Tangle> list) {
+  const auto spoilt = spoilt_shares(members, list);
   for (const auto& [a, b] : coincident_members(members)) list.push_back({1.0, a, b});
   std::stable_sort(list.begin(), list.end(), [](const Tangle& a, const Tangle& b) { return a.share > b.share; });
   std::vector<std::uint32_t> root(members.size());
   std::vector<std::uint64_t> facets(members.size());
-  std::uint64_t unique = 0, spent = 0;
+  std::vector<bool> composed(members.size(), false);
+  std::uint64_t unique = 0, spent = 0;  // facets of originals, and of those put together
   for (std::uint32_t m = 0; m < root.size(); ++m) {
     root[m] = m;
     facets[m] = members.found.originals[members.found.members[m].original].facets;
@@ -220,13 +201,15 @@ std::vector<std::vector<std::uint32_t>> groups_of(const Members& members, std::v
     return m;
   };
   for (const auto& t : list) {
+    if (t.b == MemberSurroundings::the_ground || (t.share <= tangled_share && spoilt[t.a] <= crowded_share)) continue;
     const auto a = find(t.a), b = find(t.b);
-    if (t.share <= tangled_share || a == b || members.found.members[t.a].stands_in || members.found.members[t.b].stands_in) continue;
-    const auto together = facets[a] + facets[b];
-    if (spent + together > most_merged_facets + unique) continue;
-    spent += together;
+    if (a == b || members.found.members[t.a].stands_in || members.found.members[t.b].stands_in) continue;
+    const auto more = (composed[a] ? 0 : facets[a]) + (composed[b] ? 0 : facets[b]);
+    if (spent + more > most_merged_facets + unique) continue;
+    spent += more;
     root[b] = a;
-    facets[a] = together;
+    facets[a] += facets[b];
+    composed[a] = true;
   }
   std::map<std::uint32_t, std::vector<std::uint32_t>> by_root;
   for (std::uint32_t m = 0; m < root.size(); ++m) by_root[find(m)].push_back(m);
@@ -248,21 +231,23 @@ Members make_members(const Scene& scene, const PlacedScene& placed, const Classi
                               approximation.pieces.size(), approximation.closed));
   auto originals = find_originals(scene, placed, approximation);
   Members members = with_light(scene, placed, std::move(approximation), std::move(originals), coarse, elements_per_organ, seed, progress);
-  const auto list = tangles(members, MemberSurroundings(members, placed), progress);
-  members.tangled = mean_share(members, list);
-  const auto groups = groups_of(members, list);
-  if (groups.empty()) return members;
-  std::uint64_t merged_copies = 0;
-  for (const auto& g : groups) merged_copies += g.size();
-  progress.line(fmt::format("{} copies reach into each other and are solved as {}", merged_copies, groups.size()));
-  auto found = merged(members.found, groups);
-  approximation = std::move(members.approximation);
-  const auto made_apart = members.made_with;
-  members = {};
-  members = with_light(scene, placed, std::move(approximation), std::move(found), coarse, elements_per_organ, seed, progress);
-  members.made_with = std::max(members.made_with, made_apart);
-  members.merged = merged_copies;
-  members.tangled = mean_share(members, tangles(members, MemberSurroundings(members, placed), progress));
+  for (int round = 0;; ++round) {
+    const auto list = tangles(members, MemberSurroundings(members), progress);
+    members.tangled = mean_share(members, list);
+    if (round == most_rounds || (round > 0 && members.tangled <= much_tangled)) break;
+    const auto groups = groups_of(members, list);
+    if (groups.empty()) break;
+    auto found = merged(members.found, groups);
+    approximation = std::move(members.approximation);
+    const auto made_apart = members.made_with;
+    members = {};
+    members = with_light(scene, placed, std::move(approximation), std::move(found), coarse, elements_per_organ, seed, progress);
+    members.made_with = std::max(members.made_with, made_apart);
+  }
+  std::uint64_t groups = 0;
+  for (std::size_t m = 0; m < members.size(); ++m)
+    if (const auto copies = members.found.members[m].copies.size(); copies > 1) members.merged += copies, ++groups;
+  if (groups > 0) progress.line(fmt::format("{} copies reach into each other and are solved as {}", members.merged, groups));
   return members;
 }
 

@@ -36,21 +36,17 @@ struct Members {
   Approximation approximation;
   Originals found;
   std::vector<OriginalLight> originals;
-  std::vector<Similarity> maps;             ///< per member, those far away included
-  std::vector<std::uint32_t> stand_in;      ///< per member far away: whose light it has
-  CopyScene copies;                         ///< per member, with the ground
-  std::size_t ground_facets = 0;            ///< of `copies.ground` in which light is solved; those beyond are far away
-  std::vector<std::uint32_t> ground_parts;  ///< [facets + 1] first of the parts of `copies.ground` as which each facet of the ground stands
-  std::uint64_t merged = 0;                 ///< copies that were put together with others
-  double tangled = 0;                       ///< mean share of lines inside members that meet another one
-  std::size_t made_with = 0;                ///< the most that originals held while they were made [bytes]
+  std::vector<Similarity> maps;         ///< per member, those far away included
+  std::vector<std::uint32_t> stand_in;  ///< per member far away: whose light it has
+  CopyScene copies;                     ///< per member, with the ground
+  std::vector<std::uint32_t>
+      ground_parts;           ///< [facets + 1] first of the parts of `copies.ground` as which each facet, but far ones, stands
+  std::uint64_t merged = 0;   ///< copies that were put together with others
+  double tangled = 0;         ///< see much_tangled
+  std::size_t made_with = 0;  ///< the most that originals held while they were made [bytes]
 
   /// In which light is solved.
   std::size_t size() const { return found.solved; }
-  /// The ground in which light is solved.
-  std::vector<Triangle> solved_ground() const {
-    return {copies.ground.begin(), copies.ground.begin() + static_cast<std::ptrdiff_t>(ground_facets)};
-  }
   std::size_t bytes() const;
   bool is_far(std::size_t member) const { return member >= found.solved; }
   std::uint64_t original_facets(std::size_t member) const { return found.originals[found.members[member].original].facets; }
@@ -59,8 +55,9 @@ struct Members {
 };
 
 /// Finds originals, traces their coarse operators, and puts copies that reach into each other together: what stands between two leaves
-/// of a copy and is not of it is missing in the original's operator (measured in docs/instantiation.md). Where that would cost more
-/// facets than the scene's originals have and 300,000 besides, the least tangled are left as they are.
+/// of a copy and is not of it is missing in the original's operator (measured in docs/instantiation.md). A copy in which others stand in
+/// more than a twentieth of the lines is put together with all of them. Where that would cost more facets than the scene's originals have
+/// and 300,000 besides, the least tangled are left as they are.
 /// Members that stand in for structures stay apart: what they hide of each other is part of the approximation until they are opened.
 Members make_members(const Scene& scene, const PlacedScene& placed, const Classification* classes, const OperatorDensity& coarse,
                      double elements_per_organ, std::uint64_t seed, Progress& progress);
@@ -68,8 +65,8 @@ Members make_members(const Scene& scene, const PlacedScene& placed, const Classi
 /// Of an original's coarse operator. Pieces of plants are small and many: coarser fields do.
 OperatorDensity coarse_density(const Scene& scene, const Original& original, OperatorDensity coarse);
 
-/// An original without its operator.
+/// An original without its operator, cut into elements and sampled as if it had at least `fewest_organs` (see fewest_organs()).
 OriginalLight original_light(const Scene& scene, const Approximation& approximation, const Original& original, double elements_per_organ,
-                             const OperatorDensity& density, std::uint64_t seed, Progress& progress);
+                             const OperatorDensity& density, double fewest_organs, std::uint64_t seed, Progress& progress);
 
 }  // namespace sunfleck

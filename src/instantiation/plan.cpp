@@ -20,6 +20,7 @@
 #include "instantiation/operator_size.hpp"
 #include "instantiation/outer_iteration.hpp"
 #include "instantiation/scene_light.hpp"
+#include "instantiation/sun_lines.hpp"
 
 namespace sunfleck {
 
@@ -49,6 +50,7 @@ InstantiationSharing sharing_of(const Members& members, const PlacedScene& place
   out.merged_copies = members.merged;
   out.tangled = members.tangled;
   for (const auto& o : members.originals) out.elements += o.elements.size();
+  for (const auto& o : members.found.originals) out.unique_facets += o.facets;
   out.pieces = members.approximation.pieces.size();
   out.structures = members.approximation.closed;
   for (std::size_t m = 0; m < members.size(); ++m) out.copies_of_pieces += members.found.members[m].stands_in;
@@ -63,9 +65,8 @@ std::uint64_t facets_in_all(const PlacedScene& placed) {
   return whole(static_cast<double>(placed.solved_facets()) / placed.share);
 }
 
-/// Lines towards the sun that meet the cells of a member, each cell at most as often as LitCells counts.
+/// Lines towards the sun that meet the cells of a member.
 double sun_meetings(const OriginalLight& original, const Similarity& map, const Vec3& sun, double lines_per_area) {
-  constexpr double most_count = 65535;
   const auto& s = original.elements.surface;
   const Vec3 d = map.direction_back(sun);
   const double per_area = lines_per_area * map.scale * map.scale;
@@ -73,7 +74,7 @@ double sun_meetings(const OriginalLight& original, const Similarity& map, const 
   for (std::size_t t = 0; t < s.size(); ++t) {
     if (s.split[t] == 0) continue;
     const double cosine = std::fabs(s.normal[0][t] * d.x + s.normal[1][t] * d.y + s.normal[2][t] * d.z);
-    sum += std::min(most_count, per_area * cosine * double{s.cell_area[t]}) * (s.first_cell[t + 1] - s.first_cell[t]);
+    sum += per_area * cosine * double{s.cell_area[t]} * (s.first_cell[t + 1] - s.first_cell[t]);
   }
   return sum;
 }
@@ -161,27 +162,29 @@ class Planner {
 
   void sun() {
     if (lights_.suns.empty()) return;
-    pitch_ = pitch_of_sun(members_, density_);
+    pitch_ = sun_pitches(members_, density_);
+    const auto ground = shading_ground(scene_, members_);
+    const double shade = ground ? static_cast<double>(ground->bytes()) : 0.0;
     double cells = 0;
     std::vector<double> of_member(members_.size(), 0.0);
     for (std::size_t m = 0; m < members_.size(); ++m) cells += static_cast<double>(members_.original_of(m).elements.surface.cells());
     cells *= times_;
     for (std::size_t k = 0; k < lights_.suns.size(); ++k) {
-      hold("sun", static_cast<double>(k + 1) * cells);
-      pass("sun", static_cast<double>(k + 5) * cells);  // two counts a cell
+      hold("sun", shade + static_cast<double>(k + 1) * cells);
+      pass("sun", shade + static_cast<double>(k + 5) * cells);  // two counts a cell
       tbb::parallel_for(std::size_t{0}, members_.size(), [&](std::size_t m) {
-        of_member[m] = sun_meetings(members_.original_of(m), members_.maps[m], lights_.suns[k]->direction, lines_of_sun());
+        of_member[m] = sun_meetings(members_.original_of(m), members_.maps[m], lights_.suns[k]->direction, lines_of_sun(pitch_[m]));
       });
       for (const double n : of_member) sun_fragments_ += times_ * n;
     }
   }
-  double lines_of_sun() const { return density_.sun_samples / (pitch_ * pitch_); }
+  double lines_of_sun(double pitch) const { return density_.sun_samples / (pitch * pitch); }
 
   void rays() {
-    const MemberSurroundings around(members_, placed_);
+    const MemberSurroundings around(members_);
     double ends = 0;
     for (std::size_t m = 0; m < members_.size(); ++m) ends += times_ * size_of(m).points;
-    const auto ground = empty_ground_view(scene_, members_.solved_ground(), lights_, rays_of_ground(members_, density_));
+    const auto ground = empty_ground_view(scene_, members_.copies.ground, lights_, rays_of_ground(members_, density_));
     sides_of_ground_ = static_cast<double>(ground.seen.size());
     rays_ = ends + sides_of_ground_ * ground.rays;
     hold("rays", times_ * static_cast<double>(around.bytes()) + static_cast<double>(ground.bytes()) + ends * sizeof(RayEnd));
@@ -263,10 +266,13 @@ class Planner {
     const auto& density = density_.fine;
     const Original found{{{plant, Affine{}}}, placed_.plant_facets[plant]};
     const auto original =
-        original_light(scene_, members_.approximation, found, density_.elements_per_organ, density_.coarse, seed_, progress_);
+        original_light(scene_, members_.approximation, found, density_.elements_per_organ, density_.coarse, 0.0, seed_, progress_);
     const auto pilots = pilots_of(original, density, 3, LineOperator::Seen::elements, mix(seed_, pilot_stream + 2, copy), progress_);
     const auto size = operator_size(ladder(pilots), density.directions);
-    for (const auto* s : lights_.suns) sun_fragments_ += sun_meetings(original, map, s->direction, lines_of_sun());
+    double pitch = own_sun_pitch(original, map, density_);
+    for (std::size_t m = 0; m < members_.size(); ++m)
+      if (members_.found.members[m].stands_in && members_.found.members[m].copies.front() == copy) pitch = std::min(pitch, pitch_[m]);
+    for (const auto* s : lights_.suns) sun_fragments_ += sun_meetings(original, map, s->direction, lines_of_sun(pitch));
     gather_fragments_ += size.fragments;
     gather_rays_ += size.points;
     const double bare = bare_bytes(original);
@@ -315,7 +321,8 @@ class Planner {
   const Members members_;
   std::vector<OperatorSize> coarse_;  ///< [originals]
   MemoryCount memory_;
-  double originals_ = 0, pitch_ = 1, sides_of_ground_ = 0;
+  std::vector<double> pitch_;  ///< of the sun's lines, member by member
+  double originals_ = 0, sides_of_ground_ = 0;
   double links_ = 0, line_fragments_ = 0, rays_ = 0, sun_fragments_ = 0, gather_fragments_ = 0, gather_rays_ = 0;
   std::map<std::uint64_t, std::uint64_t> waiting_;  ///< first row -> rows
   std::uint64_t next_facet_ = 0;
@@ -325,9 +332,13 @@ class Planner {
 
 }  // namespace
 
+bool repeats(std::uint64_t facets, std::uint64_t unique) {
+  return facets >= fewest_facets && facets >= 2 * unique;
+}
+
 bool repeats(const Scene& scene) {
   const auto counts = count(scene);
-  return counts.plant_facets >= fewest_facets && counts.plant_facets >= 2 * counts.unique_facets;
+  return repeats(counts.plant_facets, counts.unique_facets);
 }
 
 InstantiationDensity adapted(InstantiationDensity density, std::uint64_t facets) {

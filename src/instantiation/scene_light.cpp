@@ -13,6 +13,8 @@
 #include <sunfleck/instantiation/plan.hpp>
 #include <sunfleck/scene/counts.hpp>
 
+#include "instantiation/sun_lines.hpp"
+
 namespace sunfleck {
 
 namespace {
@@ -40,38 +42,37 @@ SceneLight::SceneLight(const Scene& a_scene, const PlacedScene& a_placed, const 
   memory.pass("originals", members.made_with);
 }
 
-double pitch_of_sun(const Members& members, const InstantiationDensity& density) {
-  double pitch = 0;
-  for (std::size_t m = 0; m < members.size(); ++m) {
-    const double organ = members.original_of(m).elements.organ_area * members.maps[m].scale * members.maps[m].scale;
-    const double own = std::sqrt(0.5 * organ / (density.sun_lines_per_organ / density.sun_samples));
-    pitch = pitch == 0 ? own : std::min(pitch, own);
-  }
-  return pitch;
-}
-
 std::uint32_t rays_of_ground(const Members& members, const InstantiationDensity& density) {
-  const std::size_t facets = members.ground_parts.size() - 1, parts = members.ground_facets;
+  const std::size_t facets = members.ground_parts.size() - 1, parts = members.ground_parts.back();
   return parts == 0 ? 8u : std::max(8u, static_cast<std::uint32_t>(std::uint64_t{density.ground_rays} * facets / parts));
 }
 
 void SceneLight::project_sun() {
-  sun_pitch = pitch_of_sun(members, density);
+  sun_pitch = sun_pitches(members, density);
+  if (!lights.suns.empty()) ground_shade = shading_ground(scene, members);
   CopyScene solved = members.copies;  // what is far shades nothing that is opened
   solved.copies.resize(members.size());
+  auto pitch = sun_pitch;
+  add_ground_shade(solved, pitch);
   for (const auto* sun : lights.suns) {
-    lit.push_back(
-        lit_cells(solved, sun_disc(*sun, density.sun_samples, mix(seed, sun_stream)), sun_pitch, mix(seed, sun_stream, 1), progress));
+    lit.push_back(lit_cells(solved, sun_disc(*sun, density.sun_samples, mix(seed, sun_stream)), pitch, mix(seed, sun_stream, 1), progress));
     sun_fragments += lit.back().fragments;
-    std::size_t bytes = 0;
+    std::size_t bytes = ground_shade ? ground_shade->bytes() : 0;
     for (const auto& one : lit) bytes += bytes_of(one.lit);
     memory.hold("sun", bytes);
     memory.pass("sun", bytes + 4 * lit.back().lit.size());  // two counts a cell
   }
 }
 
+void SceneLight::add_ground_shade(CopyScene& shade, std::vector<double>& pitch) const {
+  if (!ground_shade) return;
+  shade.surfaces.push_back(ground_shade.get());
+  shade.copies.push_back({static_cast<std::uint32_t>(shade.surfaces.size() - 1), Affine{}});
+  pitch.push_back(0.0);
+}
+
 void SceneLight::look_around(SolveReport& report) {
-  around = std::make_unique<MemberSurroundings>(members, placed);
+  around = std::make_unique<MemberSurroundings>(members);
   const std::size_t n = members.size();
   field_start.assign(n + 1, 0);
   end_start.assign(n + 1, 0);
@@ -87,7 +88,7 @@ void SceneLight::look_around(SolveReport& report) {
     look_from(static_cast<std::uint32_t>(m), op, 0, op.fields(), ends.data() + end_start[m]);
   });
   progress.check();
-  ground = view_from_ground(scene, members.solved_ground(), *around, lights, rays_of_ground(members, density), density.sun_samples,
+  ground = view_from_ground(scene, members.copies.ground, *around, lights, rays_of_ground(members, density), density.sun_samples,
                             mix(seed, ground_stream), progress);
   report.counts.emplace_back("rays", ends.size() + ground.seen.size() * ground.rays);
   memory.hold("rays", around->bytes() + bytes_of(ends) + ground.bytes());
@@ -107,17 +108,22 @@ std::uint32_t SceneLight::begin_own(std::uint32_t copy) {
   members.found.members.push_back(member);
   members.maps.push_back(member.map);
   members.originals.push_back(original_light(scene, members.approximation, members.found.originals.back(), density.elements_per_organ,
-                                             density.coarse, seed, progress));
+                                             density.coarse, 0.0, seed, progress));
   auto& light = members.originals.back();
   light.coarse = std::make_unique<LineOperator>(light.elements, light.interior, density.fine, mix(seed, own_stream, copy), progress);
   CopyScene shade = members.copies;
   shade.surfaces.push_back(&light.elements.surface);
   shade.copies.resize(members.size());
   for (auto at = gone.rbegin(); at != gone.rend(); ++at) shade.copies.erase(shade.copies.begin() + *at);
-  shade.copies.push_back({static_cast<std::uint32_t>(shade.surfaces.size() - 1), member.map.affine()});
+  std::vector<double> pitch(shade.copies.size(), 0.0);
+  add_ground_shade(shade, pitch);
+  double finest = own_sun_pitch(light, member.map, density);  // its pieces were lit by lines as fine as the smallest of them needs
+  for (const auto m : gone) finest = std::min(finest, sun_pitch[m]);
+  shade.copies.push_back({static_cast<std::uint32_t>(members.originals.size() - 1), member.map.affine()});
+  pitch.push_back(finest);
   for (const auto* sun : lights.suns)
-    own_lit.push_back(lit_cells(shade, sun_disc(*sun, density.sun_samples, mix(seed, sun_stream)), sun_pitch, mix(seed, sun_stream, 1),
-                                progress, static_cast<std::uint32_t>(shade.copies.size() - 1)));
+    own_lit.push_back(
+        lit_cells(shade, sun_disc(*sun, density.sun_samples, mix(seed, sun_stream)), pitch, mix(seed, sun_stream, 1), progress));
   gather_fragments += light.coarse->fragments;
   const std::size_t apart = light.bytes() - light.coarse->bytes();
   std::size_t sun = 0;

@@ -21,8 +21,6 @@ struct Light {
   std::vector<float> fields, ground;
 };
 
-/// Distance of the sun's lines [m].
-double pitch_of_sun(const Members& members, const InstantiationDensity& density);
 /// Rays from each part of the ground.
 std::uint32_t rays_of_ground(const Members& members, const InstantiationDensity& density);
 
@@ -73,12 +71,16 @@ struct SceneLight {
   std::vector<std::uint64_t> field_start, end_start;  ///< [members + 1]
   std::vector<RayEnd> ends;                           ///< of the coarse operators' points
   GroundView ground;
-  double sun_pitch = 0;  ///< of the sun's lines [m]
+  std::vector<double> sun_pitch;                ///< sun_pitches()
+  std::unique_ptr<const Surface> ground_shade;  ///< null where the ground shades nothing
   MemoryCount memory;
   // Work: meetings of a line with a surface, towards the sun and along the operators that light is gathered along, and rays for the latter.
   std::uint64_t sun_fragments = 0, gather_fragments = 0, gather_rays = 0;
 
  private:
+  /// The ground as one more copy, which is not counted.
+  void add_ground_shade(CopyScene& shade, std::vector<double>& pitch) const;
+
   std::uint32_t own_member = 0xffffffffu;  ///< the member that begin_own() has made
   std::vector<LitCells> own_lit;           ///< per distinct sun
   std::vector<std::uint32_t> gone;

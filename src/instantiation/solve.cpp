@@ -129,7 +129,8 @@ SolveReport solve_instantiation(const Scene& scene, const PlacedScene& placed, c
   if (s.members.tangled > much_tangled)
     progress.line(fmt::format(
         "note: {:.1f} % of what is seen inside copies is hidden by others that reach into them, or by images of their own across "
-        "the cell's border: expect errors of several per cent, and a balance that does not close; clustering has no such limit",
+        "the cell's border, or by the ground: expect errors of several per cent, and a balance that does not close; clustering has no such "
+        "limit",
         100 * s.members.tangled));
   timed("originals");
   s.project_sun();

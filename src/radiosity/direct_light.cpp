@@ -8,6 +8,7 @@
 
 #include <sunfleck/core/memory.hpp>
 #include <sunfleck/core/sampling.hpp>
+#include <sunfleck/light/level_light.hpp>
 #include <sunfleck/light/open_light.hpp>
 #include <sunfleck/light/wide_sun.hpp>
 #include <sunfleck/visibility/projection.hpp>
@@ -19,6 +20,7 @@ namespace sunfleck {
 namespace {
 
 constexpr std::uint64_t sky_stream = 0x51ed270b27c4f2a9ULL, sun_stream = 0x2545f4914f6cdd1dULL;
+constexpr double least_slope = 1e-3;  // of the sun's lines in periodic scenes
 
 constexpr std::uint32_t fewest_wide_samples = 128;  ///< of the disc of a wide sun
 
@@ -328,12 +330,13 @@ class DirectLightSolver {
     std::vector<float> all(cells, 0.0f), visible(cells, 0.0f);
     double line_area = 0;  // mean over the samples
     std::vector<double> line_areas(counts.size());
+    const auto share = [&](const Vec3& d) { return s_.periodic ? static_cast<float>(share_of_level_light(d, least_slope)) : 1.0f; };
     for (std::uint32_t first = 0; first < samples; first += batch) {
       const std::uint32_t n = std::min(batch, samples - first);
       tbb::parallel_for(std::uint32_t{0}, n, [&](std::uint32_t k) {
         const std::uint32_t i = first + k;
         Vec3 d = disc[i];
-        if (d.z < 1e-3 && s_.periodic) d = glm::normalize(Vec3{d.x, d.y, 1e-3});
+        if (d.z < least_slope && s_.periodic) d = glm::normalize(Vec3{d.x, d.y, least_slope});
         clear(counts[k], cells);
         const auto p = project_set_member(s_, d, i, pitch, mix(seed, 1));
         line_areas[k] = p.line_area;
@@ -344,7 +347,7 @@ class DirectLightSolver {
         for (std::uint32_t k = 0; k < n; ++k)
           for (std::size_t c = range.begin(); c < range.end(); ++c) {
             all[c] += counts[k].all[c];
-            visible[c] += counts[k].visible[c];
+            visible[c] += share(disc[first + k]) * counts[k].visible[c];
           }
       });
     }

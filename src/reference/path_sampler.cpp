@@ -162,7 +162,7 @@ void PathSampler::Impl::sun_at(const Vec3& p, CopyFacet facet, const Vec3& n, do
     if (!beam.sun) continue;
     const Vec3 d = beam.direction(u, v);
     const double c = glm::dot(d, n);
-    if (c == 0.0) continue;
+    if (c == 0.0 || (rays.periodic() && d.z <= 0.0)) continue;  // a scene without end hides what is below its horizon
     ++count;
     // The sun's irradiance is on a plane that faces its centre: the disc's mean cosine there is (1 + cos radius) / 2.
     if (!rays.occluded(p, d, facet)) hit(s, c > 0.0, std::abs(c) * 2.0 / (1.0 + beam.cos_radius));
@@ -453,7 +453,10 @@ PathSampler::Impl::Particles PathSampler::Impl::particles(std::uint32_t batch, s
     for (std::uint32_t i = 0; i < count; ++i) {
       RandomStream random(mix(stream, i));
       const auto x = [&](unsigned dimension) { return sobol_owen(i, dimension, scramble); };
-      if (const auto& beam = beams[s]; beam.sun) send(s, beam.direction(x(2), x(3)), x(0), x(1), 1.0, beam.sun->irradiance, random);
+      if (const auto& beam = beams[s]; beam.sun) {
+        const Vec3 d = beam.direction(x(2), x(3));
+        if (!rays.periodic() || d.z > 0.0) send(s, d, x(0), x(1), 1.0, beam.sun->irradiance, random);
+      }
       if (const Sky* sky = skies[s]) {
         // Uniform over the upper hemisphere, or over the sphere if light comes from there.
         const bool all_round = sky->reaches_below_horizon();

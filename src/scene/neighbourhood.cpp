@@ -19,6 +19,9 @@ constexpr double lowest_sun = 0.09;   // 5 degrees: shadows are not followed far
 constexpr std::size_t most_far = 50'000;
 constexpr std::size_t most_compared = 4096;  // boxes, each with all others
 constexpr std::size_t most_fields = 256;
+constexpr double most_ground_cells = 64;          // along an edge
+constexpr double far_ground_cells = 16;           // along the reach
+constexpr double beside_heights = 1.5;            // of plants: so wide a strip of ground beside them is cut as finely as that under them
 constexpr std::uint64_t small_scene = 2'000'000;  // facets
 
 Box moved(const Box& box, const Affine& map) {
@@ -200,21 +203,27 @@ class Neighbourhood {
                y = cut(ground.centre[1], ground.size[1], box.low.y - reach, box.high.y + reach);
     if (box.empty() || !(x.first < x.second) || !(y.first < y.second)) return;  // what is opened stands beside it
     const std::array<double, 4> whole{x.first, y.first, x.second, y.second};
-    std::array<double, 4> field{std::max(whole[0], box.low.x), std::max(whole[1], box.low.y), std::min(whole[2], box.high.x),
-                                std::min(whole[3], box.high.y)};
+    // beside the outermost plants, too, light varies within about their height
+    const double margin = std::min(beside_heights * height_, reach);
+    std::array<double, 4> field{std::max(whole[0], box.low.x - margin), std::max(whole[1], box.low.y - margin),
+                                std::min(whole[2], box.high.x + margin), std::min(whole[3], box.high.y + margin)};
     if (!(field[0] < field[2]) || !(field[1] < field[3])) field = whole;
-    const double cell = std::max(0.25 * size_, std::max(field[2] - field[0], field[3] - field[1]) / 64);
-    const auto cells = [&](double length) { return static_cast<std::uint32_t>(std::clamp(std::ceil(length / cell), 1.0, 64.0)); };
-    placed_.near_field = field;
-    placed_.near_cells = {cells(field[2] - field[0]), cells(field[3] - field[1])};
-    placed_.near_ground = GroundFacets(field, placed_.near_cells, ground.height).written_out();
+    const double cell = std::max(0.25 * size_, std::max(field[2] - field[0], field[3] - field[1]) / most_ground_cells);
+    placed_.near_ground = cells_of(field, cell, ground.height);
     const std::array<double, 4> rest[4] = {{whole[0], whole[1], whole[2], field[1]},
                                            {whole[0], field[3], whole[2], whole[3]},
                                            {whole[0], field[1], field[0], field[3]},
                                            {field[2], field[1], whole[2], field[3]}};
     for (const auto& r : rest)
       if (r[0] < r[2] && r[1] < r[3])
-        for (const auto& t : GroundFacets(r, {1, 1}, ground.height).written_out()) placed_.far_ground.push_back(t);
+        for (const auto& t : cells_of(r, std::max(cell, reach / far_ground_cells), ground.height)) placed_.far_ground.push_back(t);
+  }
+
+  static std::vector<Triangle> cells_of(const std::array<double, 4>& field, double cell, double height) {
+    const auto count = [&](double length) {
+      return static_cast<std::uint32_t>(std::clamp(std::ceil(length / cell), 1.0, most_ground_cells));
+    };
+    return GroundFacets(field, {count(field[2] - field[0]), count(field[3] - field[1])}, height).written_out();
   }
 
   const Scene& scene_;

@@ -104,8 +104,9 @@ struct CopyRays::Impl {
     return embree_meets(in, context, embree_ray(origin, d, from, to), r);
   }
 
-  CopyHit found(const RTCRayHit& r, const Vec3& point, const Vec3& moved) const {
+  CopyHit found(const RTCRayHit& r, const Vec3& point, double distance) const {
     CopyHit hit;
+    hit.distance = distance;
     hit.point = point + centre;
     if (r.hit.instID[0] == RTC_INVALID_GEOMETRY_ID) {
       hit.kind = CopyHit::Kind::ground;
@@ -113,7 +114,7 @@ struct CopyRays::Impl {
     } else {
       hit.kind = CopyHit::Kind::copy;
       hit.index = instance_copy[r.hit.instID[0]];
-      hit.image = moved + instance_moved[r.hit.instID[0]];
+      hit.image = instance_moved[r.hit.instID[0]];
     }
     return hit;
   }
@@ -123,7 +124,7 @@ struct CopyRays::Impl {
     RTCRayHit r;
     if (!scene.periodic) {
       if (!segment(in, p, d, skip, range, r)) return {};
-      return found(r, p + static_cast<double>(r.ray.tfar) * d, Vec3{0.0});
+      return found(r, p + static_cast<double>(r.ray.tfar) * d, static_cast<double>(r.ray.tfar));
     }
     if (std::fabs(d.z) < least_slope) d = glm::normalize(Vec3{d.x, d.y, d.z < 0 ? -least_slope : least_slope});
     const double width = scene.periodic->width(), depth = scene.periodic->depth();
@@ -137,7 +138,8 @@ struct CopyRays::Impl {
       const double to_end = d.z > 0 ? (high - p.z) / d.z : (low - p.z) / d.z;
       const double step = std::max(0.0, std::min(to_x, to_y)), overlap = 1e-6 * (1.0 + step);
       const double to = std::min({step + overlap, to_end + overlap, range - travelled});
-      if (to > from && segment(in, p, d, from, to, r)) return found(r, p + static_cast<double>(r.ray.tfar) * d, Vec3{0.0});
+      if (to > from && segment(in, p, d, from, to, r))
+        return found(r, p + static_cast<double>(r.ray.tfar) * d, travelled + static_cast<double>(r.ray.tfar));
       if (to_end <= step || travelled + step >= range) return {};
       p += step * d;
       if (to_x <= to_y) p.x += d.x > 0 ? -width : width;

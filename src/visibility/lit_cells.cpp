@@ -7,9 +7,11 @@
 
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
 
 #include <sunfleck/core/error.hpp>
 #include <sunfleck/core/sampling.hpp>
+#include <sunfleck/light/level_light.hpp>
 #include <sunfleck/visibility/projection.hpp>
 
 #include "depth_buffer.hpp"
@@ -21,7 +23,10 @@ namespace {
 
 constexpr int tile = 256;                    // lines
 constexpr std::uint32_t chunk_rows = 32;     // triangles that are left out of a tile together
-constexpr std::uint32_t most_count = 65535;  // counts are 16 bits wide and stay at their largest value
+constexpr std::uint32_t most_count = 65535;  // narrow counts are 16 bits wide and stay at their largest value
+constexpr double most_expected = 32000;      // lines through a cell that narrow counts are trusted with
+constexpr double least_slope = 1e-3;         // of lines in periodic scenes
+constexpr double golden_ratio_fraction = 0.6180339887498949;
 
 /// Bounding spheres of runs of triangles of a surface.
 struct Chunk {
@@ -63,44 +68,109 @@ void add_saturated(std::uint16_t& counter, std::uint32_t n) {
   }
 }
 
-class LitCellsCounter {
+/// Lines that meet cells, and those that meet them first. Two bytes each; eight for copies with cells that so many lines may meet that two
+/// do not hold them: large things beside small ones.
+class LineCounts {
  public:
-  LitCellsCounter(const CopyScene& scene, std::optional<std::uint32_t> only, LitCells& out) : scene_(scene), only_(only), out_(out) {
-    for (const auto* s : scene.surfaces) chunks_.push_back(chunks_of(*s));
-    out_.first.push_back(0);
-    for (std::uint32_t c = 0; c < scene.copies.size(); ++c)
-      out_.first.push_back(out_.first.back() + (counts(c) ? scene.surfaces[scene.copies[c].surface]->cells() : 0));
-    all_.assign(out_.first.back(), 0);
-    visible_.assign(out_.first.back(), 0);
+  void add_copy(std::size_t cells, bool wide) {
+    auto& next = wide ? wide_cells_ : narrow_cells_;
+    first_.push_back({next, wide});
+    next += cells;
+  }
+  void allocate() {
+    narrow_.assign(narrow_cells_, 0);
+    wide_.assign(wide_cells_, 0);
+  }
+  void add(std::uint32_t copy, std::size_t cell, std::uint32_t n) {
+    const auto& at = first_[copy];
+    if (at.wide)
+      std::atomic_ref<std::uint64_t>(wide_[at.first + cell]).fetch_add(n, std::memory_order_relaxed);
+    else
+      add_saturated(narrow_[at.first + cell], n);
+  }
+  std::uint64_t of(std::uint32_t copy, std::size_t cell) const {
+    const auto& at = first_[copy];
+    return at.wide ? wide_[at.first + cell] : narrow_[at.first + cell];
   }
 
-  void project(const Vec3& direction, double pitch, double turn, double shift_x, double shift_y) {
-    lay_out(direction, pitch, turn, shift_x, shift_y);
-    tbb::parallel_for(std::size_t{0}, bins_.size(), [&](std::size_t t) { count_tile(t); });
+ private:
+  struct First {
+    std::size_t first;
+    bool wide;
+  };
+  std::vector<First> first_;  ///< [copies]
+  std::size_t narrow_cells_ = 0, wide_cells_ = 0;
+  std::vector<std::uint16_t> narrow_;
+  std::vector<std::uint64_t> wide_;
+};
+
+class LitCellsCounter {
+ public:
+  LitCellsCounter(const CopyScene& scene, const std::vector<double>& pitch, std::size_t directions, LitCells& out)
+      : scene_(scene), pitch_(pitch), out_(out) {
+    std::vector<float> largest;  // cell of each surface
+    for (const auto* s : scene.surfaces) {
+      chunks_.push_back(chunks_of(*s));
+      largest.push_back(0.0f);
+      for (std::size_t t = 0; t < s->size(); ++t)
+        if (s->split[t] > 0) largest.back() = std::max(largest.back(), s->cell_area[t]);
+    }
+    out_.first.push_back(0);
+    for (std::uint32_t c = 0; c < scene.copies.size(); ++c) {
+      const auto surface = scene.copies[c].surface;
+      const Mat3& map = scene.copies[c].map.linear;
+      const double scale = std::max({glm::length(map[0]), glm::length(map[1]), glm::length(map[2])});
+      const std::size_t cells = pitch[c] > 0 ? scene.surfaces[surface]->cells() : 0;
+      const double lines = cells > 0 ? largest[surface] * scale * scale * static_cast<double>(directions) / (pitch[c] * pitch[c]) : 0.0;
+      all_.add_copy(cells, lines > most_expected);
+      visible_.add_copy(cells, lines > most_expected);
+      out_.first.push_back(out_.first.back() + cells);
+    }
+    all_.allocate();
+    visible_.allocate();
+  }
+
+  /// Counts lines along `direction` that are `pitch` apart, through copies of that pitch. `share`: of the lines that bring light.
+  void project(const Vec3& direction, double share, double pitch, double turn, double shift_x, double shift_y) {
+    counted_ = pitch;
+    share_ = share;
+    lay_out(direction, turn, shift_x, shift_y);
+    tbb::parallel_for(std::size_t{0}, bins_.size(), [&](std::size_t t) { count_tile(bins_[t]); });
   }
 
   void finish(Progress& progress) {
     progress.check();
-    out_.lit.resize(all_.size());
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, all_.size(), 1 << 16), [&](const auto& range) {
-      for (std::size_t i = range.begin(); i < range.end(); ++i)
-        out_.lit[i] = all_[i] ? static_cast<std::uint8_t>((510u * visible_[i] + all_[i]) / (2u * all_[i])) : std::uint8_t{0};
+    out_.lit.resize(out_.first.back());
+    std::vector<std::uint64_t> fragments(scene_.copies.size(), 0);
+    tbb::parallel_for(std::uint32_t{0}, static_cast<std::uint32_t>(fragments.size()), [&](std::uint32_t copy) {
+      for (std::size_t i = 0; i < out_.first[copy + 1] - out_.first[copy]; ++i) {
+        const std::uint64_t all = all_.of(copy, i), visible = visible_.of(copy, i);
+        out_.lit[out_.first[copy] + i] = all ? static_cast<std::uint8_t>((510 * visible + all) / (2 * all)) : std::uint8_t{0};
+        fragments[copy] += all;
+      }
     });
-    for (std::size_t i = 0; i < all_.size(); ++i) out_.fragments += all_[i];
+    for (const auto n : fragments) out_.fragments += n;
   }
 
  private:
-  bool counts(std::uint32_t copy) const { return !only_ || copy == *only_; }
+  /// A tile and the images that reach into it.
+  struct Bin {
+    std::int64_t x, y;
+    std::vector<std::uint32_t> images;
+  };
+
+  bool counts(std::uint32_t copy) const { return pitch_[copy] == counted_; }
 
   /// Frame of the plane, every image of every copy on it, and which of them reach into which tile.
-  void lay_out(const Vec3& d, double pitch, double turn, double shift_x, double shift_y) {
+  void lay_out(const Vec3& d, double turn, double shift_x, double shift_y) {
+    const double pitch = counted_;
     Projection plane;
     plane.direction = d;
     if (scene_.periodic) {
       const auto& cell = *scene_.periodic;
-      columns_ = std::max(1, static_cast<int>(std::lround(cell.width() * std::sqrt(d.z) / pitch)));
-      rows_ = std::max(1, static_cast<int>(std::lround(cell.depth() * std::sqrt(d.z) / pitch)));
-      const double per_x = columns_ / cell.width(), per_y = rows_ / cell.depth();
+      columns_ = std::max(std::int64_t{1}, std::int64_t{std::llround(cell.width() * std::sqrt(d.z) / pitch)});
+      rows_ = std::max(std::int64_t{1}, std::int64_t{std::llround(cell.depth() * std::sqrt(d.z) / pitch)});
+      const double per_x = static_cast<double>(columns_) / cell.width(), per_y = static_cast<double>(rows_) / cell.depth();
       plane.x_row = Vec3{1.0, 0.0, -d.x / d.z} * per_x;
       plane.y_row = Vec3{0.0, 1.0, -d.y / d.z} * per_y;
       plane.z_row = {0.0, 0.0, 1.0};
@@ -117,39 +187,70 @@ class LitCellsCounter {
       plane.y0 = shift_y;
     }
     placed_.clear();
-    Box range;  // of pixels
+    Box range;  // of pixels that are counted
     for (std::uint32_t i = 0; i < scene_.copies.size(); ++i)
       if (!scene_.surfaces[scene_.copies[i].surface]->focus.empty()) {
         placed_.push_back(place(plane, i));
+        if (!counts(i)) continue;
         range.add(Vec3{placed_.back().low_x, placed_.back().low_y, placed_.back().depth0});
         range.add(Vec3{placed_.back().high_x, placed_.back().high_y, placed_.back().depth0});
       }
     bins_.clear();
-    if (placed_.empty()) return;
+    if (range.empty()) return;
     if (scene_.periodic) {
       origin_x_ = origin_y_ = 0.0;
       repeat_images();
     } else {
       origin_x_ = std::floor(range.low.x);
       origin_y_ = std::floor(range.low.y);
-      columns_ = static_cast<int>(std::ceil(range.high.x - origin_x_)) + 1;
-      rows_ = static_cast<int>(std::ceil(range.high.y - origin_y_)) + 1;
+      columns_ = static_cast<std::int64_t>(std::ceil(range.high.x - origin_x_)) + 1;
+      rows_ = static_cast<std::int64_t>(std::ceil(range.high.y - origin_y_)) + 1;
     }
-    tiles_x_ = (columns_ + tile - 1) / tile;
-    const int tiles_y = (rows_ + tile - 1) / tile;
-    bins_.resize(static_cast<std::size_t>(tiles_x_) * tiles_y);
+    fill_bins();
+  }
+
+  /// Tiles that an image reaches into, the last of each axis included.
+  struct Tiles {
+    std::int64_t x0, x1, y0, y1;
+    bool empty() const { return x1 < x0 || y1 < y0; }
+    double count() const { return empty() ? 0.0 : static_cast<double>(x1 - x0 + 1) * static_cast<double>(y1 - y0 + 1); }
+    bool holds(const Bin& bin) const { return bin.x >= x0 && bin.x <= x1 && bin.y >= y0 && bin.y <= y1; }
+  };
+  Tiles tiles_of(const Placed& p) const {
+    const auto at = [](double pixel, std::int64_t size) {
+      return static_cast<std::int64_t>(std::clamp(std::floor(pixel / tile), -1.0, static_cast<double>((size - 1) / tile + 1)));
+    };
+    return {std::max(std::int64_t{0}, at(p.low_x - origin_x_, columns_)),
+            std::min((columns_ - 1) / tile, at(p.high_x - origin_x_, columns_)), std::max(std::int64_t{0}, at(p.low_y - origin_y_, rows_)),
+            std::min((rows_ - 1) / tile, at(p.high_y - origin_y_, rows_))};
+  }
+
+  /// Tiles that something counted reaches into, and all that reaches into them.
+  void fill_bins() {
+    const std::int64_t across = (columns_ - 1) / tile + 1;
+    std::vector<std::int64_t> wanted;
+    for (const auto& p : placed_)
+      if (counts(p.copy)) {
+        const Tiles t = tiles_of(p);
+        for (auto y = t.y0; y <= t.y1; ++y)
+          for (auto x = t.x0; x <= t.x1; ++x) wanted.push_back(y * across + x);
+      }
+    tbb::parallel_sort(wanted.begin(), wanted.end());
+    wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
+    bins_.resize(wanted.size());
+    for (std::size_t k = 0; k < wanted.size(); ++k) bins_[k] = {wanted[k] % across, wanted[k] / across, {}};
     for (std::uint32_t k = 0; k < placed_.size(); ++k) {
-      const auto& p = placed_[k];
-      const int x0 = std::max(0, static_cast<int>(std::floor((p.low_x - origin_x_) / tile))),
-                x1 = std::min(tiles_x_ - 1, static_cast<int>(std::floor((p.high_x - origin_x_) / tile)));
-      const int y0 = std::max(0, static_cast<int>(std::floor((p.low_y - origin_y_) / tile))),
-                y1 = std::min(tiles_y - 1, static_cast<int>(std::floor((p.high_y - origin_y_) / tile)));
-      for (int y = y0; y <= y1; ++y)
-        for (int x = x0; x <= x1; ++x) bins_[static_cast<std::size_t>(y) * tiles_x_ + x].push_back(k);
+      const Tiles t = tiles_of(placed_[k]);
+      if (t.count() > static_cast<double>(wanted.size())) {
+        for (auto& bin : bins_)
+          if (t.holds(bin)) bin.images.push_back(k);
+        continue;
+      }
+      for (auto y = t.y0; y <= t.y1; ++y) {
+        auto at = static_cast<std::size_t>(std::lower_bound(wanted.begin(), wanted.end(), y * across + t.x0) - wanted.begin());
+        for (; at < bins_.size() && bins_[at].y == y && bins_[at].x <= t.x1; ++at) bins_[at].images.push_back(k);
+      }
     }
-    if (only_)
-      for (auto& bin : bins_)
-        if (std::none_of(bin.begin(), bin.end(), [&](std::uint32_t k) { return counts(placed_[k].copy); })) bin.clear();
   }
 
   Placed place(const Projection& plane, std::uint32_t i) const {
@@ -177,8 +278,9 @@ class LitCellsCounter {
   void repeat_images() {
     std::vector<Placed> all;
     for (const auto& p : placed_) {
-      const double x0 = std::floor(p.low_x / columns_), x1 = std::floor(p.high_x / columns_);
-      const double y0 = std::floor(p.low_y / rows_), y1 = std::floor(p.high_y / rows_);
+      const auto columns = static_cast<double>(columns_), rows = static_cast<double>(rows_);
+      const double x0 = std::floor(p.low_x / columns), x1 = std::floor(p.high_x / columns);
+      const double y0 = std::floor(p.low_y / rows), y1 = std::floor(p.high_y / rows);
       const double most = 2e6 + 64.0 * static_cast<double>(placed_.size());
       if (!(static_cast<double>(all.size()) + (x1 - x0 + 1) * (y1 - y0 + 1) < most))
         throw InputError("domain.periodic", fmt::format("shadows of the sun that reach over more than {:.0f} cells", most),
@@ -187,25 +289,24 @@ class LitCellsCounter {
         for (double x = x0; x <= x1; ++x) {
           all.push_back(p);
           auto& q = all.back();
-          q.projection.x0 -= x * columns_, q.low_x -= x * columns_, q.high_x -= x * columns_;
-          q.projection.y0 -= y * rows_, q.low_y -= y * rows_, q.high_y -= y * rows_;
+          q.projection.x0 -= x * columns, q.low_x -= x * columns, q.high_x -= x * columns;
+          q.projection.y0 -= y * rows, q.low_y -= y * rows, q.high_y -= y * rows;
         }
     }
     placed_ = std::move(all);
   }
 
-  void count_tile(std::size_t t) {
-    if (bins_[t].empty()) return;
+  void count_tile(const Bin& bin) {
     thread_local DepthBuffer buffer;
     thread_local std::vector<std::uint32_t> first_code;
     buffer.clear(tile * tile);
     first_code.clear();
-    const double x_low = origin_x_ + static_cast<double>(t % tiles_x_) * tile, y_low = origin_y_ + static_cast<double>(t / tiles_x_) * tile;
-    const int columns = std::min(tile, columns_ - static_cast<int>(t % tiles_x_) * tile);
-    const int rows = std::min(tile, rows_ - static_cast<int>(t / tiles_x_) * tile);
-    const double reference = placed_[bins_[t].front()].depth0;
+    const double x_low = origin_x_ + static_cast<double>(bin.x) * tile, y_low = origin_y_ + static_cast<double>(bin.y) * tile;
+    const int columns = static_cast<int>(std::min<std::int64_t>(tile, columns_ - bin.x * tile));
+    const int rows = static_cast<int>(std::min<std::int64_t>(tile, rows_ - bin.y * tile));
+    const double reference = placed_[bin.images.front()].depth0;
     std::uint64_t base = 0;
-    for (const auto k : bins_[t]) {
+    for (const auto k : bin.images) {
       const auto& placed = placed_[k];
       const auto surface = scene_.copies[placed.copy].surface;
       const Surface& s = *scene_.surfaces[surface];
@@ -217,18 +318,26 @@ class LitCellsCounter {
       p.wraps = false;
       const auto offset = static_cast<float>(placed.depth0 - reference);
       const double scale_x = glm::length(p.x_row), scale_y = glm::length(p.y_row);
-      const std::uint64_t first_cell = out_.first[placed.copy];
       const bool counted = counts(placed.copy);
       first_code.push_back(static_cast<std::uint32_t>(base));
       const auto draw = [&](std::size_t begin, std::size_t end) {
         rasterise(s, p, nullptr, begin, end, 0, rows,
                   [&](const ProjectedTriangle& triangle, int row, int column, int count, float dx, float dy) {
                     const std::size_t first = static_cast<std::size_t>(row) * tile + column;
-                    draw_span(triangle, static_cast<std::uint32_t>(base) + s.first_cell[triangle.index], triangle.front_up ? 1u : 0u, 1.0f,
-                              offset, count, dx, dy, 0.0f, buffer.depth.data() + first, buffer.code.data() + first,
-                              [&](std::uint32_t cell, int fragments) {
-                                if (counted) add_saturated(all_[first_cell + (cell - base)], static_cast<std::uint32_t>(fragments));
-                              });
+                    float* depth = buffer.depth.data() + first;
+                    std::uint32_t* code = buffer.code.data() + first;
+                    const std::uint32_t front = triangle.front_up ? 1u : 0u;
+                    if (counted) {
+                      draw_span(triangle, static_cast<std::uint32_t>(base) + s.first_cell[triangle.index], front, 1.0f, offset, count, dx,
+                                dy, 0.0f, depth, code, [&](std::uint32_t cell, int fragments) {
+                                  all_.add(placed.copy, cell - base, static_cast<std::uint32_t>(fragments));
+                                });
+                    } else {  // one code for all that only shades
+                      ProjectedTriangle whole = triangle;
+                      whole.split = 1;
+                      draw_span(whole, static_cast<std::uint32_t>(base), front, 1.0f, offset, count, dx, dy, 0.0f, depth, code,
+                                [](std::uint32_t, int) {});
+                    }
                   });
       };
       std::size_t begin = 0, end = 0;  // a run of chunks that may reach into the tile
@@ -244,9 +353,13 @@ class LitCellsCounter {
         end = std::min(s.size(), (c + 1) * std::size_t{chunk_rows});
       }
       draw(begin, end);
-      base += s.cells();
+      base += counted ? s.cells() : 1;
     }
-    for (int row = 0; row < rows; ++row)
+    for (int row = 0; row < rows; ++row) {
+      if (share_ < 1.0) {  // rows at even distances stand for those that bring light
+        const double turns = golden_ratio_fraction * static_cast<double>(bin.y * tile + row + 1);
+        if (turns - std::floor(turns) >= share_) continue;
+      }
       for (int column = 0; column < columns;) {
         const std::uint32_t code = buffer.code[static_cast<std::size_t>(row) * tile + column];
         int end = column + 1;
@@ -254,38 +367,46 @@ class LitCellsCounter {
         if (code != nothing) {
           const auto image =
               static_cast<std::size_t>(std::upper_bound(first_code.begin(), first_code.end(), code >> 1) - first_code.begin()) - 1;
-          if (const auto copy = placed_[bins_[t][image]].copy; counts(copy))
-            add_saturated(visible_[out_.first[copy] + ((code >> 1) - first_code[image])], static_cast<std::uint32_t>(end - column));
+          if (const auto copy = placed_[bin.images[image]].copy; counts(copy))
+            visible_.add(copy, (code >> 1) - first_code[image], static_cast<std::uint32_t>(end - column));
         }
         column = end;
       }
+    }
   }
 
   const CopyScene& scene_;
-  std::optional<std::uint32_t> only_;
+  const std::vector<double>& pitch_;
   LitCells& out_;
   std::vector<std::vector<Chunk>> chunks_;
-  std::vector<std::uint16_t> all_, visible_;
+  LineCounts all_, visible_;
+  double counted_ = 0, share_ = 1;  ///< pitch of the copies that are counted; of their lines that bring light
   std::vector<Placed> placed_;
-  std::vector<std::vector<std::uint32_t>> bins_;
+  std::vector<Bin> bins_;
   double origin_x_ = 0, origin_y_ = 0;
-  int columns_ = 1, rows_ = 1, tiles_x_ = 1;
+  std::int64_t columns_ = 1, rows_ = 1;
 };
 
 }  // namespace
 
-LitCells lit_cells(const CopyScene& scene, const std::vector<Vec3>& directions, double pitch, std::uint64_t seed, Progress& progress,
-                   std::optional<std::uint32_t> only) {
+LitCells lit_cells(const CopyScene& scene, const std::vector<Vec3>& directions, const std::vector<double>& pitch, std::uint64_t seed,
+                   Progress& progress) {
   LitCells out;
-  LitCellsCounter counter(scene, only, out);
+  LitCellsCounter counter(scene, pitch, directions.size(), out);
+  std::vector<double> pitches;  // different ones, what only shades left out
+  for (const double p : pitch)
+    if (p > 0) pitches.push_back(p);
+  std::sort(pitches.begin(), pitches.end());
+  pitches.erase(std::unique(pitches.begin(), pitches.end()), pitches.end());
   for (std::size_t i = 0; i < directions.size(); ++i) {
     progress.check();
     progress.fraction("sun", static_cast<double>(i) / static_cast<double>(directions.size()));
     const auto shift = r2_point(i, unit_interval(mix(seed, 1)), unit_interval(mix(seed, 2)));
     Vec3 d = directions[i];
-    if (scene.periodic && d.z < 1e-3) d = glm::normalize(Vec3{d.x, d.y, 1e-3});
-    const double turn = static_cast<double>(i) * 0.6180339887498949 + unit_interval(mix(seed, 3));
-    counter.project(d, pitch, 2.0 * std::numbers::pi * (turn - std::floor(turn)), shift[0], shift[1]);
+    const double share = scene.periodic ? share_of_level_light(d, least_slope) : 1.0;
+    if (scene.periodic && d.z < least_slope) d = glm::normalize(Vec3{d.x, d.y, least_slope});
+    const double turn = static_cast<double>(i) * golden_ratio_fraction + unit_interval(mix(seed, 3));
+    for (const double p : pitches) counter.project(d, share, p, 2.0 * std::numbers::pi * (turn - std::floor(turn)), shift[0], shift[1]);
   }
   counter.finish(progress);
   return out;

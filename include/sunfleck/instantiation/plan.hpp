@@ -10,9 +10,10 @@
 
 namespace sunfleck {
 
-/// Mean share of the lines inside copies that other copies, or images of their own across a cell's border, stand in: from here on errors
-/// are of several per cent.
-inline constexpr double much_tangled = 0.01;
+/// Share of the lines inside copies that other copies, images of their own across a cell's border, or the ground stand in, and of those
+/// that leave copies which meet others from within; root of its mean square by area over copies: from here on errors are of several per
+/// cent.
+inline constexpr double much_tangled = 0.015;
 
 /// Of scenes with more copies, predictions are made of a part of so many (place()), and take as much of the others.
 inline constexpr std::uint64_t most_copies_in_plan = 200'000;
@@ -20,7 +21,8 @@ inline constexpr std::uint64_t most_copies_in_plan = 200'000;
 /// What copies share.
 struct InstantiationSharing {
   std::uint64_t originals = 0, copies = 0, merged_copies = 0, elements = 0;
-  double tangled = 0;  ///< see much_tangled
+  double tangled = 0;               ///< see much_tangled
+  std::uint64_t unique_facets = 0;  ///< of all originals, those of copies that were put together among them
   // Of plants that name a policy, while they are closed:
   std::uint64_t pieces = 0;      ///< originals that stand for structures, and for what is in none of them
   std::uint64_t structures = 0;  ///< structures that another stands in for
@@ -50,6 +52,7 @@ InstantiationPlan plan_instantiation(const Scene& scene, const PlacedScene& plac
 /// Does anything in a scene repeat so that sharing pays? At least half of the facets of plants are copies of others, and there are enough
 /// of them (20,000) that solving them one by one would take longer than a moment.
 bool repeats(const Scene& scene);
+bool repeats(std::uint64_t facets, std::uint64_t unique);
 
 /// The densities that a scene of so many facets is solved with: large ones take their time from the sun and from the fields, whose errors
 /// differ from copy to copy; small ones can afford a finer iteration.

@@ -109,14 +109,12 @@ struct PlacedScene {
 
   // What Scene::solve leaves closed (`only`, `stop_at` at whole plants and groups): no rows. The ground has rows unless `only` is given.
   std::vector<ClosedStructure> closed;
-  std::vector<ClosedCopy> near;        ///< copies in which light is solved: named by `stop_at`, or near what is opened or in its sun
-  std::vector<ClosedCopy> far;         ///< copies that rays meet; light that leaves them is that of copies alike that are solved
-  std::vector<Triangle> near_ground;   ///< with `only`: the ground about what is opened, world [m]
-  std::vector<Triangle> far_ground;    ///< the rest of it, as far as rays matter
-  std::array<double, 4> near_field{};  ///< x_low, y_low, x_high, y_high of near_ground, which stands for far_ground tile by tile [m]
-  std::array<std::uint32_t, 2> near_cells{1, 1};  ///< two triangles each, as ground_cells are laid
-  bool partial = false;                           ///< `only` is given
-  double share = 1;                               ///< of all copies that are listed: less where place() was given a limit
+  std::vector<ClosedCopy> near;       ///< copies in which light is solved: named by `stop_at`, or near what is opened or in its sun
+  std::vector<ClosedCopy> far;        ///< copies that rays meet; light that leaves them is that of copies alike that are solved
+  std::vector<Triangle> near_ground;  ///< with `only`: the ground about what is opened, world [m]
+  std::vector<Triangle> far_ground;   ///< the rest of it, as far as rays matter, in larger pieces
+  bool partial = false;               ///< `only` is given
+  double share = 1;                   ///< of all copies that are listed: less where place() was given a limit
 
   /// Copies in which light is solved: those with rows, then `near`; `far` follows them.
   std::size_t solved() const { return copies.size() + near.size(); }

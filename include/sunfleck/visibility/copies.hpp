@@ -37,6 +37,7 @@ struct CopyHit {
   std::uint32_t index = 0;  ///< copy, or facet of the ground
   Vec3 point{0.0};          ///< in the frame of the image that was met (finite scenes: the world) [m]
   Vec3 image{0.0};          ///< the image met is the copy moved by this [m]
+  double distance = 0;      ///< from the ray's origin [m]
 };
 
 /// Rays through copies by Embree's instancing: memory of the surfaces and some 500 bytes a copy. Any number of threads may ask.
@@ -72,10 +73,12 @@ struct LitCells {
   std::uint64_t fragments = 0;
 };
 
-/// Projects all copies along each of `directions` (points of the sun's disc) in tiles of 256 x 256 lines about `pitch` apart [m], each
-/// tile with those copies that reach into it. Only the depth buffer of a tile and two counts a cell are held.
-/// `only`: cells of that copy alone are counted, in tiles that it reaches into; the others shade it.
-LitCells lit_cells(const CopyScene& scene, const std::vector<Vec3>& directions, double pitch, std::uint64_t seed, Progress& progress,
-                   std::optional<std::uint32_t> only = std::nullopt);
+/// Projects copies along each of `directions` (points of the sun's disc) in tiles of 256 x 256 lines, each tile with those copies that
+/// reach into it. `pitch` [m]: of each copy, about how far apart the lines are that it is counted with; 0 = it shades, and is not counted.
+/// Copies of one pitch are counted together, in tiles that they reach into; all others shade them there, so that what is large does not pay
+/// for what is small. Only the depth buffer of a tile and two counts a cell are held. Counts do not saturate.
+/// Periodic scenes: lines lower than 1e-3 over the horizon are tilted to that and bring their share (share_of_level_light()).
+LitCells lit_cells(const CopyScene& scene, const std::vector<Vec3>& directions, const std::vector<double>& pitch, std::uint64_t seed,
+                   Progress& progress);
 
 }  // namespace sunfleck
