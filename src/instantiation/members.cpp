@@ -15,8 +15,8 @@
 #include <sunfleck/visibility/ground_pieces.hpp>
 
 #include "instantiation/coincident.hpp"
-#include "instantiation/organ_count.hpp"
 #include "instantiation/member_surroundings.hpp"
+#include "instantiation/organ_count.hpp"
 #include "instantiation/tangles.hpp"
 
 namespace sunfleck {

@@ -104,6 +104,15 @@ class LineCounts {
   std::vector<std::uint64_t> wide_;
 };
 
+/// Small parts are rounded up or down by chance, so that what is lit by a low sun, at its rim only, keeps its light in the mean.
+std::uint8_t in_255ths(std::uint64_t visible, std::uint64_t all, std::uint64_t seed) {
+  constexpr std::uint64_t small = 8;
+  if (all == 0) return 0;
+  if (visible == 0 || 255 * visible >= small * all) return static_cast<std::uint8_t>((510 * visible + all) / (2 * all));
+  const double exact = 255.0 * static_cast<double>(visible) / static_cast<double>(all);
+  return static_cast<std::uint8_t>(exact + unit_interval(seed));
+}
+
 class LitCellsCounter {
  public:
   LitCellsCounter(const CopyScene& scene, const std::vector<double>& pitch, std::size_t directions, LitCells& out)
@@ -145,7 +154,7 @@ class LitCellsCounter {
     tbb::parallel_for(std::uint32_t{0}, static_cast<std::uint32_t>(fragments.size()), [&](std::uint32_t copy) {
       for (std::size_t i = 0; i < out_.first[copy + 1] - out_.first[copy]; ++i) {
         const std::uint64_t all = all_.of(copy, i), visible = visible_.of(copy, i);
-        out_.lit[out_.first[copy] + i] = all ? static_cast<std::uint8_t>((510 * visible + all) / (2 * all)) : std::uint8_t{0};
+        out_.lit[out_.first[copy] + i] = in_255ths(visible, all, mix(copy, i));
         fragments[copy] += all;
       }
     });

@@ -146,6 +146,28 @@ TEST_CASE("only: what is opened agrees with path tracing through the whole scene
   }
 }
 
+TEST_CASE("only: the rim of a stand, beside open ground, agrees with path tracing of all of it") {
+  auto scene = orchard(3);
+  scene.ground = flat_ground({80, 80}, {4, 0}, {1, 1}, {0.12, 0.4});
+  ReferenceSettings settings;
+  settings.samples = 128;
+  settings.facets = 1000;  // of the first row
+  const PlacedScene whole = place(scene);
+  Kept kept(1, whole.facets, 2);
+  trace_reference(scene, FacetRows(scene, whole), settings, kept, silent());
+  const FacetRows whole_rows(scene, whole);
+  const Opened traced{whole, std::move(kept), {}};
+  scene.solve.only = {"stand 0/tile 0/row 0"};
+  const auto run = opened(scene);
+  const FacetRows rows(scene, run.placed);
+  for (std::size_t band = 0; band < 2; ++band) {
+    double a = 0, b = 0;
+    for (std::uint64_t organ = 0; organ < 500; ++organ) a += run.power(rows, organ, band), b += traced.power(whole_rows, organ, band);
+    CAPTURE(band, a, b);
+    CHECK(a == Approx(b).epsilon(0.006));
+  }
+}
+
 TEST_CASE("stop_at: closed plants, groups and structures absorb what their leaves do, and the balance closes with them") {
   auto scene = orchard(1);
   const auto all = opened(scene);

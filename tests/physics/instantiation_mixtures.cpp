@@ -213,3 +213,24 @@ TEST_CASE("instantiation: no light gets into a closed box", "[instantiation][mix
     for (int side = 0; side < 2; ++side) CHECK(run.kept.on(f, side) == 0);
   CHECK(run.kept.on(14, 0) > 100);
 }
+
+TEST_CASE("a sun at the horizon of a scene without end brings what falls on level ground, by every method", "[instantiation][mixtures]") {
+  auto scene = scene_with({"P"}, {uniform_optics("leaf", {0.0}, {0.0})});
+  scene.periodic = PeriodicCell{0, 0, 1, 1};
+  scene.ground = flat_ground({1, 1}, {0.5, 0.5}, {2, 2}, {0.0});
+  add(scene, "leaves", leaves(60, 0.2, {1, 1, 0.6}, 3), 0);
+  const double elevation = GENERATE(0.3, 0.03, 0.005);
+  const double z = std::sin(elevation * std::numbers::pi / 180);
+  point_sun(scene, {std::sqrt(1 - z * z) * 0.6, std::sqrt(1 - z * z) * 0.8, z}, 1000);
+  const double arrives = 1000 * z;  // on the cell's square metre, all of it absorbed
+  const auto absorbed = [](const Run& run) {
+    double sum = 0;
+    for (std::size_t f = 0; f < run.facets.size(); ++f) sum += run.facets.area[f] * run.absorbed(f);
+    return sum;
+  };
+  CAPTURE(elevation);
+  CHECK(absorbed(reference_runs::trace(scene, 1024)) == Approx(arrives).epsilon(0.1));
+  CHECK(absorbed(solve(scene, RadiosityMethod::clustering)) == Approx(arrives).epsilon(0.1));
+  CHECK(absorbed(solve(scene, RadiosityMethod::flat)) == Approx(arrives).epsilon(0.1));
+  CHECK(absorbed(instantiated(scene)) == Approx(arrives).epsilon(0.1));
+}

@@ -3,6 +3,7 @@
 #include <sunfleck/core/error.hpp>
 
 #include "cli/method_choice.hpp"
+#include "reference_runs.hpp"
 
 using namespace sunfleck;
 
@@ -25,4 +26,22 @@ TEST_CASE("an unknown method names those there are", "[cli]") {
       choose_method("clusterng", {}, SolveChoice{}),
       "method: found 'clusterng'; expected one of instantiation, clustering, flat, direct, reference (did you mean 'clustering'?)");
   CHECK_THROWS_AS(choose_method("clusterng", {}, SolveChoice{}), UsageError);
+}
+
+TEST_CASE("one house over many plants decides the default, however many they are", "[cli]") {
+  auto scene = reference_runs::scene_with({"PAR"}, {uniform_optics("leaf", {0.1}, {0.05})});
+  reference_runs::sky(scene, SkyModel::standard_overcast, 100);
+  reference_runs::add(scene, "crown", reference_runs::leaves(280, 0.05, {0.7, 0.7, 0.9}, 3), 0);
+  scene.plants[0].placements.clear();
+  for (int i = 0; i < 6; ++i)
+    for (int j = 0; j < 6; ++j) scene.plants[0].placements.push_back({Affine::translate({1.2 * i, 1.2 * j, 0})});
+  CHECK(default_method(scene, Quality::draft, silent()).method == "instantiation");
+  const auto sheet = [](const Vec3& corner, const Vec3& u, const Vec3& v) {
+    return Mesh{{corner, corner + u, corner + u + v, corner + v}, {{0, 1, 2}, {0, 2, 3}}};
+  };
+  reference_runs::add(scene, "house",
+                      {sheet({-0.3, -0.3, 1.5}, {7.3, 0, 0}, {0, 7.3, 0}), sheet({-0.3, -0.3, 0}, {7.3, 0, 0}, {0, 0, 1.5}),
+                       sheet({-0.3, 7, 0}, {7.3, 0, 0}, {0, 0, 1.5})},
+                      0);
+  CHECK(default_method(scene, Quality::draft, silent()).method == "clustering");
 }
