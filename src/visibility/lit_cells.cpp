@@ -140,9 +140,10 @@ class LitCellsCounter {
   }
 
   /// Counts lines along `direction` that are `pitch` apart, through copies of that pitch. `share`: of the lines that bring light.
-  void project(const Vec3& direction, double share, double pitch, double turn, double shift_x, double shift_y) {
+  void project(const Vec3& direction, double share, std::uint64_t seed, double pitch, double turn, double shift_x, double shift_y) {
     counted_ = pitch;
     share_ = share;
+    seed_ = seed;
     lay_out(direction, turn, shift_x, shift_y);
     tbb::parallel_for(std::size_t{0}, bins_.size(), [&](std::size_t t) { count_tile(bins_[t]); });
   }
@@ -365,10 +366,6 @@ class LitCellsCounter {
       base += counted ? s.cells() : 1;
     }
     for (int row = 0; row < rows; ++row) {
-      if (share_ < 1.0) {  // rows at even distances stand for those that bring light
-        const double turns = golden_ratio_fraction * static_cast<double>(bin.y * tile + row + 1);
-        if (turns - std::floor(turns) >= share_) continue;
-      }
       for (int column = 0; column < columns;) {
         const std::uint32_t code = buffer.code[static_cast<std::size_t>(row) * tile + column];
         int end = column + 1;
@@ -377,11 +374,19 @@ class LitCellsCounter {
           const auto image =
               static_cast<std::size_t>(std::upper_bound(first_code.begin(), first_code.end(), code >> 1) - first_code.begin()) - 1;
           if (const auto copy = placed_[bin.images[image]].copy; counts(copy))
-            visible_.add(copy, (code >> 1) - first_code[image], static_cast<std::uint32_t>(end - column));
+            visible_.add(copy, (code >> 1) - first_code[image], bring_light(end - column, bin, row, column));
         }
         column = end;
       }
     }
+  }
+
+  /// Of the lines of a run, those that bring light; by chance, so that they are as many in the mean.
+  std::uint32_t bring_light(int lines, const Bin& bin, int row, int column) const {
+    if (share_ >= 1.0) return static_cast<std::uint32_t>(lines);
+    const double chance =
+        unit_interval(mix(seed_, static_cast<std::uint64_t>(bin.x), static_cast<std::uint64_t>(bin.y) << 16 | row << 8 | column));
+    return static_cast<std::uint32_t>(share_ * lines + chance);
   }
 
   const CopyScene& scene_;
@@ -389,6 +394,7 @@ class LitCellsCounter {
   LitCells& out_;
   std::vector<std::vector<Chunk>> chunks_;
   LineCounts all_, visible_;
+  std::uint64_t seed_ = 0;          ///< of the direction
   double counted_ = 0, share_ = 1;  ///< pitch of the copies that are counted; of their lines that bring light
   std::vector<Placed> placed_;
   std::vector<Bin> bins_;
@@ -415,7 +421,8 @@ LitCells lit_cells(const CopyScene& scene, const std::vector<Vec3>& directions, 
     const double share = scene.periodic ? share_of_level_light(d, least_slope) : 1.0;
     if (scene.periodic && d.z < least_slope) d = glm::normalize(Vec3{d.x, d.y, least_slope});
     const double turn = static_cast<double>(i) * golden_ratio_fraction + unit_interval(mix(seed, 3));
-    for (const double p : pitches) counter.project(d, share, p, 2.0 * std::numbers::pi * (turn - std::floor(turn)), shift[0], shift[1]);
+    for (const double p : pitches)
+      counter.project(d, share, mix(seed, 4, i), p, 2.0 * std::numbers::pi * (turn - std::floor(turn)), shift[0], shift[1]);
   }
   counter.finish(progress);
   return out;
