@@ -55,7 +55,7 @@ std::unique_ptr<const Surface> shading_ground(const Scene& scene, const Members&
     const auto& s = members.original_of(m).elements.surface;
     if (!s.focus.empty()) lowest = std::min(lowest, lowest_point(s, members.maps[m]));
   }
-  if (!(lowest < highest)) return nullptr;
+  if (!(lowest < highest - members.copies.ground_gap)) return nullptr;
   FacetScene facets = expand(alone);
   for (auto& t : facets.corners)
     for (auto& p : t) p.z -= members.copies.ground_gap;
