@@ -61,7 +61,7 @@ std::unique_ptr<const Surface> shading_ground(const Scene& scene, const Members&
     for (auto& p : t) p.z -= members.copies.ground_gap;
   std::vector<std::uint32_t> order(facets.size());
   for (std::uint32_t f = 0; f < order.size(); ++f) order[f] = f;
-  return std::make_unique<Surface>(make_surface(facets, order, std::vector<std::uint16_t>(order.size(), 1), false));
+  return std::make_unique<Surface>(make_surface(facets, order, std::vector<std::uint16_t>(order.size(), 1), RowPieces{}, false));
 }
 
 }  // namespace sunfleck
