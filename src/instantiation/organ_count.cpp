@@ -11,6 +11,7 @@ namespace {
 
 constexpr double enough_organs = 200;
 constexpr std::size_t few_members = 8;
+constexpr double few_organs = 20;
 constexpr double worth_cutting = 1.5;  // times finer
 constexpr double most_uneven = 4.0;
 
@@ -52,7 +53,8 @@ std::vector<double> fewest_organs(const Scene& scene, const Originals& originals
     if (originals.originals[o].parts.front().plant >= plants.size()) out[o] = 0;
     if (!(size[o].organs > 0) || !(all.area > 0)) continue;
     const double alike = square[o] * size[o].area * all.organs / all.area;  // organs of the scene's mean size
-    const double wanted = members[o] <= few_members ? enough_organs : std::min(enough_organs, alike);
+    const bool apart = size[o].organs <= few_organs && members[o] <= few_members;
+    const double wanted = apart ? enough_organs : std::min(enough_organs, alike);
     if (wanted >= worth_cutting * size[o].organs) out[o] = wanted;
   }
   return out;

@@ -10,9 +10,9 @@
 namespace sunfleck {
 
 /// Per original, the organs that it is cut into elements and sampled by lines as if it had, at least [-]. Densities
-/// are per organ, and a house of five walls, or a box with a leaf in it, would be ten elements. Originals with few members can afford 200;
-/// others are cut as far as the mean organ of the scene is smaller than theirs, up to 200 as well. 0 = it is
-/// left as it is: pieces of plants.
+/// are per organ, and a house of five walls, or a box with a leaf in it, would be ten elements. Originals of at most 20 organs and 8
+/// members have 200; others are cut as far as the mean organ of the scene is smaller than theirs, up to 200 as well. 0 = it is left as it
+/// is: pieces of plants.
 std::vector<double> fewest_organs(const Scene& scene, const Originals& originals);
 
 /// How many times smaller than its mean organ the one is that an original of these facets is cut and sampled by, at least 1: so that it has

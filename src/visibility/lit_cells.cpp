@@ -26,6 +26,7 @@ constexpr std::uint32_t chunk_rows = 32;     // triangles that are left out of a
 constexpr std::uint32_t most_count = 65535;  // narrow counts are 16 bits wide and stay at their largest value
 constexpr double most_expected = 32000;      // lines through a cell that narrow counts are trusted with
 constexpr double least_slope = 1e-3;         // of lines in periodic scenes
+constexpr double fewest_lines = 1024;        // through a cell of a periodic scene
 constexpr double golden_ratio_fraction = 0.6180339887498949;
 
 /// Bounding spheres of runs of triangles of a surface.
@@ -113,9 +114,19 @@ std::uint8_t in_255ths(std::uint64_t visible, std::uint64_t all, std::uint64_t s
   return static_cast<std::uint8_t>(exact + unit_interval(seed));
 }
 
+/// How many more lines than `pitch` [m] says go through a scene: small cells of periodic ones have at least some.
+double times_finer(const CopyScene& scene, const Vec3& d, double pitch) {
+  return scene.periodic ? std::max(1.0, fewest_lines * pitch * pitch / (scene.periodic->area() * d.z)) : 1.0;
+}
+
+/// The direction that lines are followed along.
+Vec3 followed(const CopyScene& scene, const Vec3& d) {
+  return scene.periodic && d.z < least_slope ? glm::normalize(Vec3{d.x, d.y, least_slope}) : d;
+}
+
 class LitCellsCounter {
  public:
-  LitCellsCounter(const CopyScene& scene, const std::vector<double>& pitch, std::size_t directions, LitCells& out)
+  LitCellsCounter(const CopyScene& scene, const std::vector<double>& pitch, const std::vector<Vec3>& directions, LitCells& out)
       : scene_(scene), pitch_(pitch), out_(out) {
     std::vector<float> largest;  // cell of each surface
     for (const auto* s : scene.surfaces) {
@@ -130,7 +141,10 @@ class LitCellsCounter {
       const Mat3& map = scene.copies[c].map.linear;
       const double scale = std::max({glm::length(map[0]), glm::length(map[1]), glm::length(map[2])});
       const std::size_t cells = pitch[c] > 0 ? scene.surfaces[surface]->cells() : 0;
-      const double lines = cells > 0 ? largest[surface] * scale * scale * static_cast<double>(directions) / (pitch[c] * pitch[c]) : 0.0;
+      double lines = 0;
+      if (cells > 0)
+        for (const auto& d : directions)
+          lines += largest[surface] * scale * scale * times_finer(scene, followed(scene, d), pitch[c]) / (pitch[c] * pitch[c]);
       all_.add_copy(cells, lines > most_expected);
       visible_.add_copy(cells, lines > most_expected);
       out_.first.push_back(out_.first.back() + cells);
@@ -178,8 +192,9 @@ class LitCellsCounter {
     plane.direction = d;
     if (scene_.periodic) {
       const auto& cell = *scene_.periodic;
-      columns_ = std::max(std::int64_t{1}, std::int64_t{std::llround(cell.width() * std::sqrt(d.z) / pitch)});
-      rows_ = std::max(std::int64_t{1}, std::int64_t{std::llround(cell.depth() * std::sqrt(d.z) / pitch)});
+      const double finer = std::sqrt(times_finer(scene_, d, pitch) * d.z) / pitch;
+      columns_ = std::max(std::int64_t{1}, std::int64_t{std::llround(cell.width() * finer)});
+      rows_ = std::max(std::int64_t{1}, std::int64_t{std::llround(cell.depth() * finer)});
       const double per_x = static_cast<double>(columns_) / cell.width(), per_y = static_cast<double>(rows_) / cell.depth();
       plane.x_row = Vec3{1.0, 0.0, -d.x / d.z} * per_x;
       plane.y_row = Vec3{0.0, 1.0, -d.y / d.z} * per_y;
@@ -407,7 +422,7 @@ class LitCellsCounter {
 LitCells lit_cells(const CopyScene& scene, const std::vector<Vec3>& directions, const std::vector<double>& pitch, std::uint64_t seed,
                    Progress& progress) {
   LitCells out;
-  LitCellsCounter counter(scene, pitch, directions.size(), out);
+  LitCellsCounter counter(scene, pitch, directions, out);
   std::vector<double> pitches;  // different ones, what only shades left out
   for (const double p : pitch)
     if (p > 0) pitches.push_back(p);
@@ -417,9 +432,8 @@ LitCells lit_cells(const CopyScene& scene, const std::vector<Vec3>& directions, 
     progress.check();
     progress.fraction("sun", static_cast<double>(i) / static_cast<double>(directions.size()));
     const auto shift = r2_point(i, unit_interval(mix(seed, 1)), unit_interval(mix(seed, 2)));
-    Vec3 d = directions[i];
-    const double share = scene.periodic ? share_of_level_light(d, least_slope) : 1.0;
-    if (scene.periodic && d.z < least_slope) d = glm::normalize(Vec3{d.x, d.y, least_slope});
+    const Vec3 d = followed(scene, directions[i]);
+    const double share = scene.periodic ? share_of_level_light(directions[i], least_slope) : 1.0;
     const double turn = static_cast<double>(i) * golden_ratio_fraction + unit_interval(mix(seed, 3));
     for (const double p : pitches)
       counter.project(d, share, mix(seed, 4, i), p, 2.0 * std::numbers::pi * (turn - std::floor(turn)), shift[0], shift[1]);
