@@ -30,7 +30,8 @@ Surface make_surface(const FacetScene& scene, const std::vector<std::uint32_t>& 
   const Box plants = plant_bounds(scene);
   const Box& precise = plants.empty() ? scene.bounds : plants;  // what single precision serves best
   const GroundGap gap(scene);
-  s.origin = precise.empty() ? Vec3{0.0} : precise.centre();
+  const Box& middle = scene.periodic ? scene.bounds : precise;  // lines of a cell are laid out from there
+  s.origin = middle.empty() ? Vec3{0.0} : middle.centre();
   s.periodic = scene.periodic;
   s.ground_gap = gap.metres();
   for (auto& c : s.corner) c.resize(n);
