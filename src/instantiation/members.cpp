@@ -99,6 +99,19 @@ std::size_t Members::bytes() const {
 
 namespace {
 
+/// Plants that cover much of the box about all count as that box, however many of them a plan has placed.
+std::vector<Box> without_gaps(std::vector<Box> boxes) {
+  constexpr double much = 0.02;
+  double covered = 0;
+  Box all;
+  for (const auto& b : boxes) {
+    if (b.empty()) continue;
+    covered += b.size().x * b.size().y;
+    all.add(b);
+  }
+  return covered > much * all.size().x * all.size().y ? std::vector<Box>{all} : boxes;
+}
+
 /// Light on the ground varies over a tenth of a plant's size: larger facets are cut, those much larger where plants are near.
 void split_ground(const std::vector<Triangle>& ground, Members& out) {
   constexpr double most_parts = 40'000.0, most_pieces = 10'000.0;
@@ -119,10 +132,11 @@ void split_ground(const std::vector<Triangle>& ground, Members& out) {
   const double wanted = whole ? 1.0 : facet / static_cast<double>(ground.size()) / aim;
   const double affordable = std::sqrt(most_parts / static_cast<double>(std::max<std::size_t>(1, ground.size())));
   const int k = std::clamp(static_cast<int>(std::lround(std::min(wanted, affordable))), 1, most_split);
-  const bool much_too_wide = std::lround(wanted) > most_split;
+  const bool much_too_wide = wanted > 4.0 * most_split;
   if (much_too_wide && out.copies.periodic)
     boxes = {Box{{out.copies.periodic->x_low, out.copies.periodic->y_low, 0.0},
                  {out.copies.periodic->x_high, out.copies.periodic->y_high, 0.0}}};
+  if (much_too_wide) boxes = without_gaps(std::move(boxes));
   const Footprints footprints(much_too_wide ? std::move(boxes) : std::vector<Box>{});
   const double finest = std::sqrt(2.0) * std::max(aim, std::sqrt(footprints.area(0.0) / most_pieces));
   for (const auto& t : ground) {
