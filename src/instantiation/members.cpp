@@ -113,7 +113,8 @@ std::vector<Box> without_gaps(std::vector<Box> boxes) {
 }
 
 /// Light on the ground varies over a tenth of a plant's size: larger facets are cut, those much larger where plants are near.
-void split_ground(const std::vector<Triangle>& ground, Members& out) {
+/// `part_placed`: not all copies are here, and the others may be anywhere.
+void split_ground(const std::vector<Triangle>& ground, bool part_placed, Members& out) {
   constexpr double most_parts = 40'000.0, most_pieces = 10'000.0;
   constexpr int most_split = 4;
   double plant = 0, facet = 0;
@@ -136,6 +137,9 @@ void split_ground(const std::vector<Triangle>& ground, Members& out) {
   if (much_too_wide && out.copies.periodic)
     boxes = {Box{{out.copies.periodic->x_low, out.copies.periodic->y_low, 0.0},
                  {out.copies.periodic->x_high, out.copies.periodic->y_high, 0.0}}};
+  if (much_too_wide && part_placed)
+    for (const auto& t : ground)
+      for (const auto& p : t) boxes.front().add(p);
   if (much_too_wide) boxes = without_gaps(std::move(boxes));
   const Footprints footprints(much_too_wide ? std::move(boxes) : std::vector<Box>{});
   const double finest = std::sqrt(2.0) * std::max(aim, std::sqrt(footprints.area(0.0) / most_pieces));
@@ -190,7 +194,7 @@ Members with_light(const Scene& scene, const PlacedScene& placed, Approximation 
     out.copies.copies.push_back({m.original, m.map.affine()});
   }
   out.copies.periodic = scene.periodic;
-  split_ground(placed.partial ? placed.near_ground : placed.ground.written_out(), out);
+  split_ground(placed.partial ? placed.near_ground : placed.ground.written_out(), placed.share < 1.0, out);
   out.copies.ground.insert(out.copies.ground.end(), placed.far_ground.begin(), placed.far_ground.end());
   lower_ground(out);
   return out;

@@ -187,7 +187,10 @@ class Planner {
     const auto ground = empty_ground_view(scene_, members_.copies.ground, lights_, rays_of_ground(members_, density_));
     sides_of_ground_ = static_cast<double>(ground.seen.size());
     rays_ = ends + sides_of_ground_ * ground.rays;
-    hold("rays", times_ * static_cast<double>(around.bytes()) + static_cast<double>(ground.bytes()) + ends * sizeof(RayEnd));
+    constexpr double bytes_of_ground_part = 84;  // in the rays' tree
+    const double of_ground = bytes_of_ground_part * static_cast<double>(members_.copies.ground.size());
+    hold("rays", times_ * std::max(0.0, static_cast<double>(around.bytes()) - of_ground) + of_ground + static_cast<double>(ground.bytes()) +
+                     ends * sizeof(RayEnd));
   }
   const OperatorSize& size_of(std::size_t m) const { return coarse_[members_.found.members[m].original]; }
 

@@ -128,7 +128,8 @@ struct CopyRays::Impl {
     }
     if (std::fabs(d.z) < least_slope) d = glm::normalize(Vec3{d.x, d.y, d.z < 0 ? -least_slope : least_slope});
     const double width = scene.periodic->width(), depth = scene.periodic->depth();
-    const double low = box.low.z - centre.z, high = box.high.z - centre.z;
+    const double slack = 1e-6 * std::max({width, depth, box.size().z});  // level ground is at the very end, in single precision
+    const double low = box.low.z - centre.z - slack, high = box.high.z - centre.z + slack;
     p.x -= width * std::floor(p.x / width);
     p.y -= depth * std::floor(p.y / depth);
     double travelled = 0, from = skip;
