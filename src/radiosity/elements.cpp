@@ -32,9 +32,11 @@ double mean_organ_area(const FacetScene& facets) {
 }
 
 /// Leaves wider than their periodic cell lie many on each other: one value for a cell's width of them tells nothing of how light fades from
-/// one to the next [m^2].
+/// one to the next [m^2]. Plants out of all proportion to the cell are a mistake of units, and are not worth the lines.
 double largest_periodic_element(double cell_area, double organ_area) {
-  return organ_area > cell_area ? cell_area / 128.0 * cell_area / organ_area : std::numeric_limits<double>::infinity();
+  constexpr double out_of_proportion = 16.0;
+  const double ratio = organ_area / cell_area;
+  return ratio > 1.0 && ratio <= out_of_proportion ? cell_area / (128.0 * ratio) : std::numeric_limits<double>::infinity();
 }
 
 /// Organs in tree order, but within small clusters those of one material together, so that small ones can share an element.
