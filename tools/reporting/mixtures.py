@@ -143,10 +143,7 @@ class Mixture:
         self.reach = width / 2
         kind = ['flat', 'flat', 'coarse', 'hill', 'slope', 'period', 'period', 'none'][k % 8]
         self.lay_ground(kind, width)
-        if k < 48:
-            self.grow(width)
-        else:
-            self.grow_many(width)
+        self.grow(width)
         for thing in self.things(k):
             getattr(self, thing)(width)
         self.shine(k)
@@ -200,17 +197,10 @@ class Mixture:
         else:
             self.stand('bush', crown(r, 300, .2 * width, .03 * width, .25 * width, True), 1, width, one_organ=True)
 
-    def grow_many(self, width):
-        """So many copies that their sharing may pay."""
-        r = self.r
-        self.parts.append('many copies')
-        mesh = crown(r, 250, .05 * width, .015 * width, .07 * width, True) if r.random() < .5 else tuft(r, 60, .12 * width, .008 * width, True)
-        self.stand('copy', mesh, 64, width, .07 * width)
-
-    def stand(self, name, mesh, count, width, apart=None, one_organ=False):
+    def stand(self, name, mesh, count, width, one_organ=False):
         if one_organ:
             mesh.faces = [('all', corners) for _, corners in mesh.faces]
-        at = [(x, y, self.ground_height(x, y), turn) for x, y, _, turn in places(self.r, count, .45 * width, 0, .2 * width if apart is None else apart)]
+        at = [(x, y, self.ground_height(x, y), turn) for x, y, _, turn in places(self.r, count, .45 * width, 0, .2 * width)]
         self.add(name, mesh, 'leaf', at)
 
     # -- what else stands there
