@@ -14,10 +14,10 @@ namespace {
 
 using Point = glm::dvec2;
 
-constexpr double warp = 0.1;                         ///< distance from the mean plane, of the polygon's size, that is worth a note
-constexpr double flat_angle = 1e-13;                 ///< areas of triangles, of the square of the polygon's size, that are rounding
-constexpr double fan_rounding = 1e-9;                ///< the same of a whole fan
-constexpr std::uint64_t most_tests = 2'000'000'000;  ///< of a corner against an ear: some seconds
+constexpr double warp = 0.1;                       ///< distance from the mean plane, of the polygon's size, that is worth a note
+constexpr double flat_angle = 1e-13;               ///< areas of triangles, of the square of the polygon's size, that are rounding
+constexpr double fan_rounding = 1e-9;              ///< the same of a whole fan
+constexpr std::uint64_t most_tests = 300'000'000;  ///< of a corner against an ear: a second or two
 
 /// Corners by the cell of a square raster that they lie in.
 class Raster {

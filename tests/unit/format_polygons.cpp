@@ -188,3 +188,13 @@ TEST_CASE("Concave polygons have the area of their outline in every format that 
           "</meshBDD><shapeBDD><shape Id=\"0\"><meshIndex>0</meshIndex></shape></shapeBDD><topology class=\"Plant\"><geometry><shapeIndex>0"
           "</shapeIndex><mat>1 0 0 0 0 1 0 0 0 0 1 0</mat></geometry></topology></opf>") == Approx(2.5));
 }
+
+TEST_CASE("A polygon too intricate to be cut in reasonable time is refused with its line", "[format][polygons]") {
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> place(0, 1);
+  std::vector<Vec3> polygon;
+  for (int i = 0; i < 60000; ++i) polygon.push_back({place(random), place(random), 0});
+  CHECK_THROWS_WITH(cut(polygon),
+                    "plant.obj:7: found a polygon of 60000 corners that is too intricate to be cut into triangles; expected polygons "
+                    "of fewer corners, or triangles");
+}
