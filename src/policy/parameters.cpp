@@ -1,7 +1,6 @@
 #include "policy/parameters.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 
 #include <sunfleck/plant/describe.hpp>
@@ -10,12 +9,6 @@
 namespace sunfleck {
 
 namespace {
-
-bool is_one_of(const std::string& text, std::initializer_list<const char*> names) {
-  std::string lower = text;
-  for (auto& c : lower) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return std::any_of(names.begin(), names.end(), [&](const char* name) { return lower == name; });
-}
 
 ParameterValue number(double value, bool whole) {
   return {value, {}, whole};
@@ -40,10 +33,6 @@ double extent_along_axis(const Subtrees& subtrees, std::uint32_t structure) {
 }
 
 }  // namespace
-
-bool is_leaf_type(const std::string& type) {
-  return is_one_of(type, {"leaf"});
-}
 
 const std::vector<std::string>& derived_parameters() {
   static const std::vector<std::string> names{"type", "leaf_count", "order", "area", "length", "height"};

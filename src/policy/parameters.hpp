@@ -11,8 +11,6 @@
 
 namespace sunfleck {
 
-bool is_leaf_type(const std::string& type);
-
 /// Parameters that every plant has.
 const std::vector<std::string>& derived_parameters();
 

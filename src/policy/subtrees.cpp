@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include <sunfleck/core/sampling.hpp>
+#include <sunfleck/plant/leaf_type.hpp>
 #include <sunfleck/policy/classes.hpp>
 
 #include "policy/parameters.hpp"

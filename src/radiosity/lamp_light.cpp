@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include <sunfleck/core/cosine_direction.hpp>
 #include <sunfleck/core/sampling.hpp>
 
 namespace sunfleck {
@@ -25,14 +26,6 @@ int clip(const Triangle& t, const Vec3& n, Vec3* out) {
       out[count++] = t[i] + height[i] / (height[i] - height[j]) * (t[j] - t[i]);
   }
   return count;
-}
-
-/// A direction about n with a density of cos / pi.
-Vec3 cosine_direction(const Vec3& n, double u, double v) {
-  Vec3 a, b;
-  orthonormal_frame(n, a, b);
-  const double r = std::sqrt(u), azimuth = 2.0 * pi * v;
-  return r * std::cos(azimuth) * a + r * std::sin(azimuth) * b + std::sqrt(1.0 - u) * n;
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <optional>
 
+#include <sunfleck/core/cosine_direction.hpp>
 #include <sunfleck/core/sampling.hpp>
 
 #include "lamp_paths.hpp"
@@ -16,14 +17,6 @@ namespace sunfleck {
 namespace {
 
 constexpr double pi = std::numbers::pi;
-
-/// Unit vector about n with a density of cos / pi.
-Vec3 cosine_direction(const Vec3& n, double u, double v) {
-  Vec3 a, b;
-  orthonormal_frame(n, a, b);
-  const double r = std::sqrt(u), azimuth = 2.0 * pi * v;
-  return r * std::cos(azimuth) * a + r * std::sin(azimuth) * b + std::sqrt(1.0 - u) * n;
-}
 
 /// Above the rounding of rays.
 double clearance_of(const RayScene& rays) {

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <sunfleck/core/error.hpp>
+#include <sunfleck/plant/leaf_type.hpp>
 
 namespace sunfleck {
 
@@ -52,7 +53,7 @@ std::vector<Contents> contents_of(const Plant& plant) {
       for (const auto& p : shape_triangle(plant, shape, t)) c.bounds.add(p);
   }
   for (auto s = plant.structures.size(); s-- > 0;) {
-    if (same_word(plant.types[plant.structures[s].type], "leaf")) ++out[s].leaves;
+    if (is_leaf_type(plant.types[plant.structures[s].type])) ++out[s].leaves;
     const auto parent = plant.structures[s].parent;
     if (parent == no_parent) continue;
     out[parent].bounds.add(out[s].bounds);

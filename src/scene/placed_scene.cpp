@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include <sunfleck/core/error.hpp>
+#include <sunfleck/plant/leaf_type.hpp>
 #include <sunfleck/scene/counts.hpp>
 
 #include "scene/neighbourhood.hpp"
@@ -126,16 +127,11 @@ class Placing {
     const Plant& plant = *scene_.plants[index].plant;
     if (stop.leaf_count) {
       std::uint64_t leaves = 0;
-      for (const auto& s : plant.structures) leaves += is_leaf(plant, s);
+      for (const auto& s : plant.structures) leaves += is_leaf_type(plant.types[s.type]);
       return leaves <= *stop.leaf_count;
     }
     const Vec3 size = plant.bounds().size();
     return std::max({size.x, size.y, size.z}) <= *stop.size;
-  }
-
-  static bool is_leaf(const Plant& plant, const Structure& s) {
-    const std::string& type = plant.types[s.type];
-    return type == "leaf" || type == "Leaf" || type == "LEAF";
   }
 
   void count_plant(std::size_t p) {

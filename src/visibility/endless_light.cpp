@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include <fmt/core.h>
 
 #include <sunfleck/core/error.hpp>
+#include <sunfleck/core/cosine_direction.hpp>
 #include <sunfleck/core/sampling.hpp>
 
 namespace sunfleck {
@@ -33,10 +33,8 @@ bool endless(const RayScene& rays, std::size_t band, Vec3 p, Vec3 d, RandomStrea
     p = c[0] + hit.u * (c[1] - c[0]) + hit.v * (c[2] - c[0]);
     const bool reflected = random.next() >= double{m.transmittance[band]};
     const Vec3 n = glm::normalize(area_vector(c)) * (hit.front == reflected ? 1.0 : -1.0);
-    Vec3 a, b;
-    orthonormal_frame(n, a, b);
-    const double u = random.next(), azimuth = 2.0 * std::numbers::pi * random.next(), r = std::sqrt(u);
-    d = r * std::cos(azimuth) * a + r * std::sin(azimuth) * b + std::sqrt(1.0 - u) * n;
+    const double u = random.next();
+    d = cosine_direction(n, u, random.next());
   }
   return true;
 }
