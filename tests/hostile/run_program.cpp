@@ -61,8 +61,8 @@ ProgramRun run_sunfleck(const std::vector<std::string>& arguments, const Program
       setrlimit(RLIMIT_STACK, &stack);
       setrlimit(RLIMIT_AS, &all);
     }
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGPIPE}) std::signal(signal, SIG_DFL);  // whatever the tests' runner makes of them
     if (fate.ignored_signal > 0) std::signal(fate.ignored_signal, SIG_IGN);
-    std::signal(SIGPIPE, SIG_DFL);  // whatever the runner of the tests has made of it
     if (fate.seconds > 0) alarm(fate.seconds);
     for (const auto& variable : fate.environment) putenv(const_cast<char*>(variable.c_str()));
     if (fate.memory_bytes > 0) {
