@@ -46,6 +46,7 @@ class Viewer {
       dup2(out[1], STDOUT_FILENO);
       dup2(open("/dev/null", O_WRONLY), STDERR_FILENO);
       close(out[0]), close(out[1]);
+      for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGPIPE}) std::signal(signal, SIG_DFL);  // whatever the tests' runner makes of them
       execl(SUNFLECK_PROGRAM, "sunfleck", "view", result.c_str(), nullptr);
       _exit(127);
     }
