@@ -8,6 +8,10 @@
 #include <sunfleck/core/memory.hpp>
 #include <sunfleck/visibility/ground_gap.hpp>
 
+#include "gather_elements.hpp"
+#include "plant_shades.hpp"
+#include "transport.hpp"
+
 namespace sunfleck {
 
 namespace {
@@ -136,14 +140,22 @@ Elements::Place Elements::place_of(std::uint32_t first_row, double u, double v) 
   return {row, surface.first_cell[row] + cell_of(static_cast<float>(u), static_cast<float>(v), surface.split[row])};
 }
 
-Elements make_elements(const Scene& scene, const FacetScene& facets, const RadiositySettings& settings) {
-  const bool flat = settings.method == RadiosityMethod::flat;
+void list_cells(Elements& e) {
+  e.first_cell.assign(e.size() + 1, 0);
+  for (const auto i : e.element_of_cell) ++e.first_cell[i + 1];
+  for (std::size_t i = 0; i < e.size(); ++i) e.first_cell[i + 1] += e.first_cell[i];
+  e.cells.resize(e.element_of_cell.size());
+  auto cursor = e.first_cell;
+  for (std::uint32_t c = 0; c < e.cells.size(); ++c) e.cells[cursor[e.element_of_cell[c]]++] = c;
+}
+
+Elements gather_elements(const Scene& scene, const FacetScene& facets, bool flat, const ElementSizes& sizes,
+                         const std::vector<std::uint16_t>& wanted_split) {
   Elements e;
   const std::size_t n = facets.size();
   e.plant_facets = facets.plant_facets;
-  e.organ_area = mean_organ_area(facets);
-  e.element_area = e.organ_area / settings.density.elements_per_organ;
-  if (scene.periodic) e.element_area = std::min(e.element_area, largest_periodic_element(scene.periodic->area(), e.organ_area));
+  e.organ_area = sizes.organ;
+  e.element_area = sizes.element;
   e.tree = cluster_order(scene, facets);
   // facets by organ, file order within
   std::vector<std::uint32_t> start(facets.organs.size() + 1, 0), members(n), material_of_organ(facets.organs.size(), 0);
@@ -186,7 +198,8 @@ Elements make_elements(const Scene& scene, const FacetScene& facets, const Radio
       }
       const bool cut = facets.area[f] > 0 && (wider_than_cell || (!flat && (f < facets.plant_facets || !ground_is_flat ||
                                                                             facets.plant_facets == 0 || ground.near(facets.corners[f]))));
-      add_row(f, cut ? split_for(facets.area[f], aim) : std::uint16_t{1}, RowPieces::whole);
+      const bool wanted = !wanted_split.empty() && wanted_split[f] > 0;
+      add_row(f, wanted ? wanted_split[f] : cut ? split_for(facets.area[f], aim) : std::uint16_t{1}, RowPieces::whole);
     }
   e.surface = make_surface(facets, e.order, split, e.pieces, ground_is_flat);
   const auto& s = e.surface;
@@ -230,16 +243,24 @@ Elements make_elements(const Scene& scene, const FacetScene& facets, const Radio
         }
         e.element_of_cell[c] = current.index;
         e.area[current.index] += s.split[row] > 0 ? s.cell_area[row] : 0.0f;
-        if (flat || (!is_small && e.area[current.index] >= 0.999 * part_area)) current.open = false;
+        const bool by_facet = flat && !wanted_split.empty() && wanted_split[e.order[row]] > 0;  // shades part it later
+        if (by_facet ? c + 1 == s.first_cell[row + 1] : flat || (!is_small && e.area[current.index] >= 0.999 * part_area))
+          current.open = false;
       }
     current.open = is_small && current.open && e.area[current.index] < part_area;
   }
-  e.first_cell.assign(e.size() + 1, 0);
-  for (const auto i : e.element_of_cell) ++e.first_cell[i + 1];
-  for (std::size_t i = 0; i < e.size(); ++i) e.first_cell[i + 1] += e.first_cell[i];
-  e.cells.resize(s.cells());
-  auto cursor = e.first_cell;
-  for (std::uint32_t c = 0; c < s.cells(); ++c) e.cells[cursor[e.element_of_cell[c]]++] = c;
+  list_cells(e);
+  return e;
+}
+
+Elements make_elements(const Scene& scene, const FacetScene& facets, const RadiositySettings& settings) {
+  const double organ = mean_organ_area(facets);
+  ElementSizes sizes{organ, organ / settings.density.elements_per_organ};
+  if (scene.periodic) sizes.element = std::min(sizes.element, largest_periodic_element(scene.periodic->area(), organ));
+  PlantShades shades;
+  if (settings.method != RadiosityMethod::direct && anything_scatters(facets)) shades = plant_shades(scene, facets, settings, sizes);
+  Elements e = gather_elements(scene, facets, settings.method == RadiosityMethod::flat, sizes, splits(shades, facets.size()));
+  part_elements(facets, shades, e);
   return e;
 }
 
