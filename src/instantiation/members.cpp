@@ -65,6 +65,7 @@ OriginalLight original_light(const Scene& scene, const Approximation& approximat
   settings.density = density_of(Quality::standard);
   const double finer = times_finer(facets, fewest_organs);
   settings.density.elements_per_organ = elements_per_organ * finer;
+  settings.density.fewest_organs = 1.0;  // see times_finer()
   settings.density.least_unevenness = density.field_pixels < fewest_pixels_of_shades ? 1e9 : unevenness_of_originals;
   out.elements = make_elements(own, facets, settings);
   out.facet_material = facets.optics;

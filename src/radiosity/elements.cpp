@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <optional>
 
 #include <sunfleck/core/memory.hpp>
@@ -16,23 +17,28 @@ namespace sunfleck {
 
 namespace {
 
+/// So many times the middle organ is the mean at most: five walls over a hundred leaves do not make leaves parts of a wall.
+constexpr double most_middle_organs = 3.0;
+/// What large surfaces then take: the work of so many organs in all, or of so many for each that there is.
+constexpr double least_budget = 3'000.0, budget_per_organ = 4.0;
 /// Mean area of plant organs (of ground cells where no plant has an area; 1 where nothing has one: no line meets anything, however many
-/// there are) [m^2]. The plain mean, not the area-weighted one: with lines
+/// there are), within the limits above [m^2]. The plain mean, not the area-weighted one: with lines
 /// of even density, N_o ~ A_o lines meet organ o, its squared error goes like 1 / A_o, and the area-weighted mean squared error like
 /// (number of organs) / (total area).
-double mean_organ_area(const FacetScene& facets) {
+double mean_organ_area(const FacetScene& facets, double fewest_organs) {
   const auto plants = facets.area.begin() + static_cast<std::ptrdiff_t>(facets.plant_facets);
   const bool any_plant = std::any_of(facets.area.begin(), plants, [](float area) { return area > 0.0f; });
   const std::size_t end = any_plant ? facets.plant_facets : facets.size();
-  std::vector<bool> seen(facets.organs.size(), false);
-  double sum = 0, organs = 0;
-  for (std::size_t f = 0; f < end; ++f) {
-    if (facets.area[f] == 0.0f) continue;
-    sum += facets.area[f];
-    if (!seen[facets.organ[f]]) organs += 1;
-    seen[facets.organ[f]] = true;
-  }
-  return organs > 0 ? sum / organs : 1.0;
+  std::vector<double> area(facets.organs.size(), 0.0);
+  for (std::size_t f = 0; f < end; ++f) area[facets.organ[f]] += facets.area[f];
+  area.erase(std::remove(area.begin(), area.end(), 0.0), area.end());
+  if (area.empty()) return 1.0;
+  const auto count = static_cast<double>(area.size());
+  const double sum = std::accumulate(area.begin(), area.end(), 0.0);
+  const auto middle = area.begin() + static_cast<std::ptrdiff_t>(area.size() / 2);
+  std::nth_element(area.begin(), middle, area.end());
+  return std::min(
+      {sum / count, sum / fewest_organs, std::max(most_middle_organs * *middle, sum / std::max(least_budget, budget_per_organ * count))});
 }
 
 /// Leaves wider than their periodic cell lie many on each other: one value for a cell's width of them tells nothing of how light fades from
@@ -254,7 +260,7 @@ Elements gather_elements(const Scene& scene, const FacetScene& facets, bool flat
 }
 
 Elements make_elements(const Scene& scene, const FacetScene& facets, const RadiositySettings& settings) {
-  const double organ = mean_organ_area(facets);
+  const double organ = mean_organ_area(facets, settings.method == RadiosityMethod::flat ? 1.0 : settings.density.fewest_organs);
   ElementSizes sizes{organ, organ / settings.density.elements_per_organ};
   if (scene.periodic) sizes.element = std::min(sizes.element, largest_periodic_element(scene.periodic->area(), organ));
   PlantShades shades;

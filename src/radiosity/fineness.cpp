@@ -40,7 +40,8 @@ RadiosityDensity density_at(double fineness) {
           .sun_lines_per_organ = between(a.sun_lines_per_organ, b.sun_lines_per_organ),
           .link_error = between(a.link_error, b.link_error),
           .tolerance = between(a.tolerance, b.tolerance),
-          .fewest_hits = between(a.fewest_hits, b.fewest_hits)};
+          .fewest_hits = between(a.fewest_hits, b.fewest_hits),
+          .fewest_organs = between(a.fewest_organs, b.fewest_organs)};
 }
 
 }  // namespace sunfleck

@@ -27,7 +27,8 @@ RadiosityDensity density_of(Quality quality) {
            .sun_lines_per_organ = 3000.0,
            .link_error = 0.5,
            .tolerance = 2e-6,
-           .fewest_hits = 160e3};
+           .fewest_hits = 160e3,
+           .fewest_organs = 100.0};
       break;
     case Quality::fine:
       d = {.directions = 640,
@@ -39,7 +40,8 @@ RadiosityDensity density_of(Quality quality) {
            .sun_lines_per_organ = 10000.0,
            .link_error = 0.25,
            .tolerance = 1e-6,
-           .fewest_hits = 224e3};
+           .fewest_hits = 224e3,
+           .fewest_organs = 100.0};
       break;
   }
   return d;
