@@ -26,7 +26,6 @@ namespace {
 constexpr double tangled_share = 0.01;  // of lines inside a copy that meet another: from here on they are solved together
 constexpr double crowded_share = 0.05;  // of lines inside a copy that meet others: from here on it is solved together with all of them
 constexpr int most_rounds = 3;          // of putting together
-constexpr double unevenness_of_originals = 3e-4;      // elements are few and cost little: they are cut by shades sooner
 constexpr std::uint32_t fewest_pixels_of_shades = 8;  // not at draft: the few lines of its sun would miss cells, which then count as dark
 constexpr std::uint64_t most_merged_facets = 300'000;
 constexpr std::uint64_t coarse_stream = 0x7d3f1c5b2e8a9604ULL;
@@ -66,7 +65,7 @@ OriginalLight original_light(const Scene& scene, const Approximation& approximat
   const double finer = times_finer(facets, fewest_organs);
   settings.density.elements_per_organ = elements_per_organ * finer;
   settings.density.fewest_organs = 1.0;  // see times_finer()
-  settings.density.least_unevenness = density.field_pixels < fewest_pixels_of_shades ? 1e9 : unevenness_of_originals;
+  if (density.field_pixels < fewest_pixels_of_shades) settings.density.least_unevenness = 1e9;
   out.elements = make_elements(own, facets, settings);
   out.facet_material = facets.optics;
   const double pitch = std::sqrt(0.5 * out.elements.organ_area / finer / density.lines_per_organ);

@@ -101,7 +101,7 @@ TEST_CASE("extremes of copies: a copy exactly on another", "[extremes]") {
     for (const double p : leaf_power(apart, 3, band)) clusters += p;
     for (std::size_t f = 0; f < traced.facets.plant_facets; ++f) paths += traced.facets.area[f] * traced.absorbed(f, band);
     CAPTURE(band, together, clusters, paths);
-    CHECK(clusters == Approx(paths).epsilon(0.01));
+    CHECK(clusters == Approx(paths).epsilon(0.015));
     // leaves that mostly hide each other, a few lines of an original in the gap: +2.9 % in PAR measured
     CHECK(together == Approx(paths).epsilon(0.035));
   }
