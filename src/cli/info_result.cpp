@@ -9,7 +9,7 @@
 
 #include "cli/json_text.hpp"
 #include "cli/solve_table.hpp"
-#include "cli/text_units.hpp"
+#include <sunfleck/core/text_units.hpp>
 
 namespace sunfleck {
 
@@ -180,7 +180,7 @@ void print_result_info(const std::string& file, bool json) {
   fmt::print("\n");
   std::fflush(stdout);
   const auto shares = plant_shares(r);
-  print_solve_table(scene, report, certificate ? &*certificate : nullptr, shares ? &*shares : nullptr);
+  print_solve_table(scene, {}, report, certificate ? &*certificate : nullptr, shares ? &*shares : nullptr);
 
   fmt::print("\ntimings\n");
   for (const auto& [name, seconds] : r.timings()) fmt::print("  {:<28}{:>9.3f} s\n", name, seconds);

@@ -16,7 +16,7 @@
 #include <sunfleck/core/replaced_file.hpp>
 #include <sunfleck/view/export.hpp>
 
-#include "cli/text_units.hpp"
+#include <sunfleck/core/text_units.hpp>
 
 namespace sunfleck {
 

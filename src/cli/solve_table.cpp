@@ -82,8 +82,9 @@ void print_certificate(const Scene& scene, const Certificate& certificate) {
 
 }  // namespace
 
-void print_solve_table(const Scene& scene, const SolveReport& report, const Certificate* certificate, const PlantShares* shares) {
-  if (!scene.solve.only.empty()) fmt::print("of what is opened only: what it exchanges with the rest is in the residual\n");
+void print_solve_table(const Scene& scene, const Depth& depth, const SolveReport& report, const Certificate* certificate,
+                       const PlantShares* shares) {
+  if (!depth.only.empty()) fmt::print("of what is opened only: what it exchanges with the rest is in the residual\n");
   fmt::print("{}\n", scene.periodic ? "power balance of one cell; absorbed, ground and albedo are fractions of the incident light"
                                     : "power balance; absorbed, ground and albedo are fractions of the incident light");
   fmt::print(

@@ -16,7 +16,7 @@
 #include "cli/output_path.hpp"
 #include "cli/result_inputs.hpp"
 #include "cli/result_status.hpp"
-#include "cli/text_units.hpp"
+#include <sunfleck/core/text_units.hpp>
 
 namespace sunfleck {
 

@@ -13,7 +13,7 @@
 #include <sunfleck/scene/counts.hpp>
 
 #include "cli/output_path.hpp"
-#include "cli/text_units.hpp"
+#include <sunfleck/core/text_units.hpp>
 
 namespace sunfleck {
 

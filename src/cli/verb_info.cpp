@@ -22,7 +22,7 @@
 #include "cli/info_result.hpp"
 #include "cli/json_text.hpp"
 #include "cli/sizes_text.hpp"
-#include "cli/text_units.hpp"
+#include <sunfleck/core/text_units.hpp>
 
 namespace sunfleck {
 

@@ -14,7 +14,7 @@
 #include <sunfleck/original/suggest.hpp>
 
 #include "cli/json_text.hpp"
-#include "cli/text_units.hpp"
+#include <sunfleck/core/text_units.hpp>
 
 namespace sunfleck {
 

@@ -8,11 +8,11 @@
 #include <tbb/global_control.h>
 
 #include <sunfleck/core/memory.hpp>
+#include <sunfleck/core/text_units.hpp>
 #include <sunfleck/format/scene_toml.hpp>
+#include <sunfleck/solver/plan.hpp>
 
 #include "cli/json_text.hpp"
-#include "cli/plan.hpp"
-#include "cli/text_units.hpp"
 
 namespace sunfleck {
 
@@ -71,10 +71,14 @@ int verb_plan(const PlanOptions& options, Progress& progress) {
   const std::size_t bytes_at_start = resident_bytes();
   std::optional<tbb::global_control> limit;
   if (options.threads > 0) limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(options.threads));
-  const Scene scene = read_scene(options.scene);
+  const auto [scene, of_scene, output] = read_scene_file(options.scene);
   for (const auto& note : scene.notes) progress.line("note: " + note);
-  const MethodChoice choice = choose_method(options.method, options.quality, scene, progress);
-  const Plan plan = make_plan(scene, choice, progress, bytes_at_start, options.threads);
+  RunSettings run;
+  run.method = options.method;
+  if (options.quality) run.quality = quality_from_name(*options.quality);
+  run.threads = options.threads;
+  run = filled_up(std::move(run), of_scene);
+  const Plan plan = make_plan(scene, choose_method(run, scene, progress), run, progress, bytes_at_start);
   if (options.json)
     fmt::print("{}\n", json_text(json_of(scene, plan)));
   else

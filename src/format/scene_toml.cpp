@@ -102,18 +102,19 @@ std::string read_path(const TomlValue& value, const Scene& scene, const std::str
   return path.string();
 }
 
-Scene read_scene(const std::string& file) {
+SceneFile read_scene_file(const std::string& file) {
   const TomlDocument document(file);
   const TomlValue root = document.root();
   document.check_keys(scene_schema(band_names_if_any(root)));
-  Scene scene;
+  SceneFile out;
+  Scene& scene = out.scene;
   scene.file = file;
   scene.text = document.text();
   read_bands(root, scene);
   read_domain(root, scene);
   read_light(root, scene);
-  read_output(root, scene);
-  read_solve(root, scene);
+  read_output(root, out.output);
+  read_solve(root, out.run);
   read_optics(root, scene);
   read_ground(root, scene);
   read_plants_and_groups(root, scene);
@@ -122,7 +123,11 @@ Scene read_scene(const std::string& file) {
   check_scene(scene);
   for (auto& note : notes_on_sizes(scene, scene_sizes(scene))) scene.notes.push_back(std::move(note));
   for (auto& note : notes_on_extent(scene)) scene.notes.push_back(std::move(note));
-  return scene;
+  return out;
+}
+
+Scene read_scene(const std::string& file) {
+  return read_scene_file(file).scene;
 }
 
 }  // namespace sunfleck

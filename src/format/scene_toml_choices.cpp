@@ -29,39 +29,38 @@ void read_stop(const TomlValue& value, StopAt& out) {
 
 }  // namespace
 
-void read_output(const TomlValue& root, Scene& scene) {
+void read_output(const TomlValue& root, OutputChoice& out) {
   const auto output = root.get("output");
   if (!output) return;
-  if (const auto facets = output->get("facets")) scene.output.facets = facets->flag();
+  if (const auto facets = output->get("facets")) out.facets = facets->flag();
   if (const auto fields = output->get("fields")) {
     for (const auto& field : fields->items()) {
-      scene.output.fields.push_back(field.one_of(output_fields()));
-      if (!scene.output.facets && scene.output.fields.back().rfind("facets/", 0) == 0)
+      out.fields.push_back(field.one_of(output_fields()));
+      if (!out.facets && out.fields.back().rfind("facets/", 0) == 0)
         field.fail("a dataset of organs, since facets = false keeps no others");
     }
-    if (scene.output.fields.empty()) fields->fail("at least one dataset, or no `fields` to keep all");
+    if (out.fields.empty()) fields->fail("at least one dataset, or no `fields` to keep all");
   }
 }
 
-void read_solve(const TomlValue& root, Scene& scene) {
+void read_solve(const TomlValue& root, RunSettings& run) {
   const auto solve = root.get("solve");
   if (!solve) return;
   if (const auto quality = solve->get("quality")) {
-    const auto name = quality->one_of({"draft", "standard", "fine"});
-    scene.solve.quality = name == "draft" ? Quality::draft : name == "fine" ? Quality::fine : Quality::standard;
+    run.quality = quality_from_name(quality->one_of({"draft", "standard", "fine"}));
   }
   if (const auto method = solve->get("method"))
-    scene.solve.method = method->one_of({"instantiation", "clustering", "flat", "direct", "reference"});
+    run.method = method->one_of(method_names());
   if (const auto seed = solve->get("seed"))
-    scene.solve.seed = static_cast<std::uint64_t>(seed->integer(0, std::numeric_limits<std::int64_t>::max()));
-  if (const auto certificate = solve->get("certificate")) scene.solve.certificate = certificate->flag();
+    run.seed = static_cast<std::uint64_t>(seed->integer(0, std::numeric_limits<std::int64_t>::max()));
+  if (const auto certificate = solve->get("certificate")) run.certificate = certificate->flag();
   if (const auto only = solve->get("only")) {
     if (!only->is_array()) only->fail("an array of placements, such as [\"tile 3/*\", \"coffee 17\"]");
-    for (const auto& item : only->items()) scene.solve.only.push_back(item.text());
-    if (scene.solve.only.empty()) only->fail("at least one placement, or no `only` to open all");
+    for (const auto& item : only->items()) run.depth.only.push_back(item.text());
+    if (run.depth.only.empty()) only->fail("at least one placement, or no `only` to open all");
   }
-  if (const auto stop = solve->get("stop_at")) read_stop(*stop, scene.solve.stop_at);
-  if (const auto samples = solve->get("samples")) scene.solve.samples = static_cast<std::uint32_t>(samples->integer(1, 1 << 30));
+  if (const auto stop = solve->get("stop_at")) read_stop(*stop, run.depth.stop_at);
+  if (const auto samples = solve->get("samples")) run.samples = static_cast<std::uint32_t>(samples->integer(1, 1 << 30));
 }
 
 }  // namespace sunfleck

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include <sunfleck/scene/run_settings.hpp>
 #include <sunfleck/scene/scene.hpp>
 
 #include <format/toml_value.hpp>
@@ -64,7 +65,7 @@ void read_sensors(const TomlValue& root, Scene& scene);
 // scene_toml_choices.cpp
 TomlSchema output_schema();
 TomlSchema solve_schema();
-void read_output(const TomlValue& root, Scene& scene);
-void read_solve(const TomlValue& root, Scene& scene);
+void read_output(const TomlValue& root, OutputChoice& out);
+void read_solve(const TomlValue& root, RunSettings& run);
 
 }  // namespace sunfleck

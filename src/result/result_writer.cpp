@@ -9,6 +9,7 @@
 #include <sunfleck/core/error.hpp>
 #include <sunfleck/core/names.hpp>
 #include <sunfleck/core/sha256.hpp>
+#include <sunfleck/scene/absorptance.hpp>
 
 #include "result/describe_scene.hpp"
 #include "result/band_units.hpp"
@@ -46,21 +47,16 @@ class ResultWriter::Impl {
         fields_(checked_fields(output, scene)),
         states_(scene.states.size()),
         bands_(scene.band_count()),
+        absorptance_(rows_.materials(), bands_),
         file_(path),
         queue_(file_),
         names_(organ_names(rows_)) {
     const h5::Quiet quiet;
     profile_ = HeightProfile(rows_, states_, bands_);
-    for (const auto& m : rows_.materials())
-      for (std::size_t b = 0; b < bands_; ++b) {
-        absorptance_.push_back(1.0 - double{m.reflectance_front[b]} - double{m.transmittance[b]});
-        absorptance_.push_back(1.0 - double{m.reflectance_back[b]} - double{m.transmittance[b]});
-      }
     for (const auto& m : rows_.materials()) is_leaf_.push_back(m.counts_as_leaf);
     std::vector<std::string> plants;
     for (const auto& entry : scene.plants) plants.push_back(entry.name);
     shares_ = PlantShares(states_, bands_, std::move(plants));
-    for (auto& a : absorptance_) a = std::max(a, 0.0);  // rho + tau = 1 in float may exceed 1 by a rounding
 
     h5::write_attribute(file_, file_.id(), "format", "sunfleck-result");
     h5::write_attribute(file_, file_.id(), "format_version", std::uint64_t{1});
@@ -203,8 +199,7 @@ class ResultWriter::Impl {
         const double front = irradiance[(i * 2) * bands_ + b], back = irradiance[(i * 2 + 1) * bands_ + b];
         if (!std::isfinite(front) || !std::isfinite(back))
           throw Error(fmt::format("{}: the irradiance of facet {} is not finite", file_.path(), next_facet_ + i));
-        const double* absorptance = &absorptance_[(facet.material * bands_ + b) * 2];
-        const auto absorbed = static_cast<float>(absorptance[0] * front + absorptance[1] * back);
+        const auto absorbed = static_cast<float>(absorptance_.absorbed(facet.material, b, front, back));
         floats_[i * bands_ + b] = absorbed;
         organs_->add_irradiance(s, facet.organ, 0, b, area * front);
         organs_->add_irradiance(s, facet.organ, 1, b, area * back);
@@ -245,6 +240,7 @@ class ResultWriter::Impl {
   FacetRows rows_;
   std::vector<std::string> fields_;
   std::size_t states_, bands_;
+  Absorptance absorptance_;
   h5::OutputFile file_;
   h5::ChunkQueue queue_;
   OrganNames names_;
@@ -253,8 +249,7 @@ class ResultWriter::Impl {
   std::optional<h5::OrganRows> organs_;
   HeightProfile profile_;
   PlantShares shares_;
-  std::vector<bool> is_leaf_;        ///< [material]
-  std::vector<double> absorptance_;  ///< [material][b][front, back]
+  std::vector<bool> is_leaf_;  ///< [material]
   bool wide_organs_ = false;
   std::uint64_t next_facet_ = 0;
   std::uint32_t copy_ = 0;  ///< that next_facet_ belongs to

@@ -32,8 +32,8 @@ std::string path_of(const Plant& plant, std::uint32_t structure) {
 
 }  // namespace
 
-bool stops_inside(const Scene& scene, const PlacedScene& placed) {
-  return !scene.solve.stop_at.empty() && !placed.copies.empty();
+bool stops_inside(const PlacedScene& placed) {
+  return !placed.depth.stop_at.empty() && !placed.copies.empty();
 }
 
 PlacedScene structures_layout(const Scene& scene, const PlacedScene& placed) {
@@ -45,13 +45,14 @@ PlacedScene structures_layout(const Scene& scene, const PlacedScene& placed) {
   out.organs = placed.ground.organs();
   out.closed = placed.closed;
   out.partial = placed.partial;
+  out.depth = placed.depth;
   std::map<std::uint32_t, PlantStructures> known;
   bool any = false;
   for (std::size_t c = 0; c < placed.copies.size(); ++c) {
     const auto plant = placed.copies[c].plant;
     const auto& p = *scene.plants[plant].plant;
     const auto at = known.find(plant);
-    const auto& structures = at != known.end() ? at->second : known.emplace(plant, structures_of(p, scene.solve.stop_at)).first->second;
+    const auto& structures = at != known.end() ? at->second : known.emplace(plant, structures_of(p, placed.depth.stop_at)).first->second;
     any = any || structures.cuts.closed() > 0;
     for (std::size_t k = structures.rest ? 0 : 1; k < structures.cuts.structures.size(); ++k) {
       const auto s = structures.cuts.structures[k];
@@ -63,7 +64,7 @@ PlacedScene structures_layout(const Scene& scene, const PlacedScene& placed) {
   for (const auto& [plant, s] : known)
     for (const auto& structure : scene.plants[plant].plant->structures) types.insert(scene.plants[plant].plant->types[structure.type]);
   const std::vector<std::string> list(types.begin(), types.end());
-  const auto& stop = scene.solve.stop_at;
+  const auto& stop = placed.depth.stop_at;
   const std::string nearest = nearest_name(stop.type, list);
   throw InputError(
       location(scene.file, 0, "solve.stop_at"),
@@ -72,13 +73,18 @@ PlacedScene structures_layout(const Scene& scene, const PlacedScene& placed) {
 }
 
 StructureSums::StructureSums(const Scene& scene, const PlacedScene& placed, const PlacedScene& layout, IrradianceSink& ground)
-    : scene_(scene), placed_(placed), layout_(layout), ground_(ground), rows_(scene, placed) {
+    : scene_(scene),
+      placed_(placed),
+      layout_(layout),
+      ground_(ground),
+      rows_(scene, placed),
+      absorptance_(rows_.materials(), scene.band_count()) {
   const std::size_t values = scene.states.size() * scene.band_count();
   std::map<std::uint32_t, std::size_t> count;
   std::size_t row = 0;
   for (const auto& copy : placed.copies) {
     if (!row_of_organ_.count(copy.plant)) {
-      const auto s = structures_of(*scene.plants[copy.plant].plant, scene.solve.stop_at);
+      const auto s = structures_of(*scene.plants[copy.plant].plant, placed.depth.stop_at);
       auto& of_organ = row_of_organ_[copy.plant];
       for (const auto structure : rows_.organ_structures(copy.plant)) of_organ.push_back(s.cuts.of_structure[structure] - (s.rest ? 0 : 1));
       count[copy.plant] = s.cuts.closed() + (s.rest ? 1 : 0);
@@ -105,14 +111,12 @@ void StructureSums::rows(const IrradianceRows& r) {
     const auto& of_organ = row_of_organ_.at(placed_.copies[copy].plant);
     rows_.visit(copy, first, first + count, [&](std::uint64_t facet, const Triangle& corners, std::uint32_t material, std::uint32_t organ) {
       const double area = glm::length(area_vector(corners));
-      const auto& optics = rows_.materials()[material];
       const std::size_t i = at + (facet - first);
       for (std::size_t s = 0; s < states; ++s)
         for (std::size_t b = 0; b < bands; ++b) {
           const float* sides = r.irradiance + ((s * r.count + i) * 2) * bands + b;
-          const double absorbed = std::max(0.0, 1.0 - optics.reflectance_front[b] - optics.transmittance[b]) * sides[0] +
-                                  std::max(0.0, 1.0 - optics.reflectance_back[b] - optics.transmittance[b]) * sides[bands];
-          sums_[((first_row_[copy] + of_organ[organ]) * states + s) * bands + b] += area * absorbed;
+          sums_[((first_row_[copy] + of_organ[organ]) * states + s) * bands + b] +=
+              area * absorptance_.absorbed(material, b, sides[0], sides[bands]);
         }
     });
     at += count;

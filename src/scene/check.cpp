@@ -85,6 +85,7 @@ class Check {
         fail(key + ".sky", "a sky of directions without any", "a table of directions and radiances");
       if (state.sky->model == SkyModel::clear && !state.sky->sun)
         fail(key + ".sky", "a clear sky without a sun", "the direction of the sun, about which it is built");
+      if (!is_prepared(*state.sky)) fail(key + ".sky", "a clear sky that is not prepared", "a call of prepare_sky(), which solve() makes");
     }
   }
 

@@ -25,7 +25,7 @@ std::string label(const std::string& name, std::size_t i) {
 class Placing {
  public:
   Placing(const Scene& scene, std::uint64_t most_copies, PlacedScene& out)
-      : scene_(scene), most_copies_(most_copies), out_(out), only_(scene.solve.only, location(scene.file, 0, "solve.only")) {}
+      : scene_(scene), most_copies_(most_copies), out_(out), only_(out.depth.only, location(scene.file, 0, "solve.only")) {}
 
   void run() {
     out_.plant_facets.assign(scene_.plants.size(), 0);
@@ -37,7 +37,7 @@ class Placing {
       all += copies[p];
       if (copies[p] > 0) count_plant(p);
     }
-    if (!out_.partial && scene_.solve.stop_at.empty() && all > most_copies_)
+    if (!out_.partial && out_.depth.stop_at.empty() && all > most_copies_)
       out_.share = static_cast<double>(most_copies_) / static_cast<double>(all);
     try {
       if (!out_.partial) {
@@ -120,7 +120,7 @@ class Placing {
 
   /// Does `stop_at` name this plant or group as a whole?
   bool stops_at(bool is_group, std::uint32_t index) {
-    const auto& stop = scene_.solve.stop_at;
+    const auto& stop = out_.depth.stop_at;
     if (stop.empty()) return false;
     if (is_group) return stop.type == scene_.groups[index].name;
     if (!stop.type.empty()) return stop.type == "plant" || stop.type == scene_.plants[index].name;
@@ -225,8 +225,9 @@ std::string GroundFacets::organ_name(std::size_t organ) const {
   return "cell_" + std::to_string(organ % cells_[0]) + "_" + std::to_string(organ / cells_[0]);
 }
 
-PlacedScene place(const Scene& scene, std::uint64_t most_copies) {
+PlacedScene place(const Scene& scene, const Depth& depth, std::uint64_t most_copies) {
   PlacedScene out;
+  out.depth = depth;
   Placing(scene, most_copies, out).run();
   if (!out.closed.empty()) add_neighbourhood(scene, out);
   if (out.facets == 0 && out.near.empty() && scene.sensors.empty())

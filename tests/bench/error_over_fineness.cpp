@@ -36,7 +36,7 @@ int main(int count, char** arguments) {
     double seconds = 0;
     for (int seed = 1; seed <= seeds; ++seed) {
       const auto start = std::clock();
-      ResultWriter writer(file, scene, placed, scene.output, software_version(), method);
+      ResultWriter writer(file, scene, placed, OutputChoice{}, software_version(), method);
       SolveReport report;
       if (method == "instantiation") {
         InstantiationSettings settings;

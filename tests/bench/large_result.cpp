@@ -49,7 +49,7 @@ int main(int argc, char** argv) {
   const PlacedScene copies_in_world = place(scene);
   const PlantFacets own = plant_facets(scene.plants[0]);
   {
-    ResultWriter writer(argv[1], scene, copies_in_world, scene.output, "bench", "flat");
+    ResultWriter writer(argv[1], scene, copies_in_world, OutputChoice{}, "bench", "flat");
     std::vector<float> irradiance(own.size() * 4), sunlit(own.size() * 2);
     for (const auto& copy : copies_in_world.copies) {
       for (std::size_t i = 0; i < own.size(); ++i) {

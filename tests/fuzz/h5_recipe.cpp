@@ -186,7 +186,7 @@ std::vector<std::uint8_t> changed_result_file(Bytes bytes) {
     const test::Folder folder;
     const Scene scene = test::small_scene(3);
     const PlacedScene placed = place(scene);
-    ResultWriter writer(folder / "r.h5", scene, placed, scene.output, "0.1.0", "flat");
+    ResultWriter writer(folder / "r.h5", scene, placed, OutputChoice{}, "0.1.0", "flat");
     test::Values(expand(scene)).send(writer, 1000);
     const Certificate certificate = [] {
       Certificate c;

@@ -18,7 +18,7 @@ void write_result(const std::string& file, bool with_irradiance = true) {
   const FacetScene facets = expand(scene);
   const PlacedScene placed = place(scene);
   const Values values(facets);
-  ResultWriter writer(file, scene, placed, scene.output, "0.1.0", "flat");
+  ResultWriter writer(file, scene, placed, OutputChoice{}, "0.1.0", "flat");
   values.send(writer, 1000);
   writer.finish(small_report());
 }

@@ -18,7 +18,7 @@ std::string good_file(const Folder& folder, std::uint32_t leaves = 3) {
   const Scene scene = small_scene(leaves);
   const FacetScene facets = expand(scene);
   const PlacedScene placed = place(scene);
-  ResultWriter writer(folder / "r.h5", scene, placed, scene.output, "0.1.0", "flat");
+  ResultWriter writer(folder / "r.h5", scene, placed, OutputChoice{}, "0.1.0", "flat");
   Values(facets).send(writer, 1000);
   writer.finish(small_report());
   return folder / "r.h5";

@@ -6,7 +6,7 @@
 #include <sunfleck/instantiation/solve.hpp>
 #include <sunfleck/radiosity/plan.hpp>
 
-#include "cli/method_choice.hpp"
+#include <sunfleck/solver/method_choice.hpp>
 #include "radiosity/transport.hpp"
 #include "radiosity_runs.hpp"
 

@@ -41,7 +41,7 @@ Figures measure(const std::string& name, Quality quality) {
     RadiositySettings settings;
     settings.seed = static_cast<std::uint64_t>(seed);
     settings.density = density_of(quality);
-    ResultWriter writer(path, scene, placed, scene.output, software_version(), "clustering");
+    ResultWriter writer(path, scene, placed, OutputChoice{}, software_version(), "clustering");
     const auto report = solve_radiosity(scene, facets, settings, writer, silent());
     writer.finish(report);
     REQUIRE(report.status == SolveStatus::converged);

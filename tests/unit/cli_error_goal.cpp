@@ -5,7 +5,7 @@
 #include <sunfleck/radiosity/fineness.hpp>
 
 #include "cli/error_goal.hpp"
-#include "cli/refinement.hpp"
+#include "solver/refinement.hpp"
 
 using namespace sunfleck;
 

@@ -34,7 +34,7 @@ std::string write(const Folder& folder, const char* name, const Scene& scene, co
   const PlacedScene placed = place(scene);
   std::vector<float> irradiance;
   for (const float e : made.front) irradiance.insert(irradiance.end(), {e, 0.0f});
-  ResultWriter writer(folder / name, scene, placed, scene.output, "0.1.0", made.variance.empty() ? "flat" : "reference");
+  ResultWriter writer(folder / name, scene, placed, OutputChoice{}, "0.1.0", made.variance.empty() ? "flat" : "reference");
   writer.rows({0, facets.size(), irradiance.data(), nullptr, made.variance.empty() ? nullptr : made.variance.data()});
   SolveReport report = small_report();
   report.balance = {{made.balance}};
@@ -135,7 +135,7 @@ TEST_CASE("compare counts each state and all together", "[result][compare]") {
   const auto write_states = [&](const char* name, float noon, float evening) {
     std::vector<float> irradiance(2 * n * 2, 0.0f);
     for (std::size_t f = 0; f < n; ++f) irradiance[2 * f] = noon, irradiance[2 * n + 2 * f] = evening;
-    ResultWriter writer(folder / name, scene, placed, scene.output, "0.1.0", "flat");
+    ResultWriter writer(folder / name, scene, placed, OutputChoice{}, "0.1.0", "flat");
     writer.rows({0, n, irradiance.data(), nullptr, nullptr});
     SolveReport report = small_report();
     report.balance = {{Balance{10, 5, 0, 5}}, {Balance{2, 1, 0, 1}}};

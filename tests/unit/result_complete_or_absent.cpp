@@ -54,7 +54,7 @@ TEST_CASE("A result that is not finished leaves what was there", "[result][compl
 
   SECTION("the writer is destroyed half way") {
     {
-      ResultWriter writer(file, scene, placed, scene.output, "0.1.0", "flat");
+      ResultWriter writer(file, scene, placed, OutputChoice{}, "0.1.0", "flat");
       writer.rows({0, 1, values.irradiance.data(), nullptr, nullptr});
       CHECK(folder.files() == 2);
     }
@@ -63,7 +63,7 @@ TEST_CASE("A result that is not finished leaves what was there", "[result][compl
   }
   SECTION("rows are missing at the end") {
     {
-      ResultWriter writer(file, scene, placed, scene.output, "0.1.0", "flat");
+      ResultWriter writer(file, scene, placed, OutputChoice{}, "0.1.0", "flat");
       writer.rows({0, 1, values.irradiance.data(), nullptr, nullptr});
       CHECK_THROWS_WITH(writer.finish(small_report()), file + ": only 1 of 4016 facets have values");
     }
@@ -71,7 +71,7 @@ TEST_CASE("A result that is not finished leaves what was there", "[result][compl
     CHECK(folder.files() == 1);
   }
   SECTION("rows come twice") {
-    ResultWriter writer(file, scene, placed, scene.output, "0.1.0", "flat");
+    ResultWriter writer(file, scene, placed, OutputChoice{}, "0.1.0", "flat");
     writer.rows({0, 1, values.irradiance.data(), nullptr, nullptr});
     CHECK_THROWS_WITH(writer.rows({0, 1, values.irradiance.data(), nullptr, nullptr}),
                       file + ": rows 0 to 1 of 4016 facets arrived where row 1 was due");
@@ -79,13 +79,13 @@ TEST_CASE("A result that is not finished leaves what was there", "[result][compl
   SECTION("a value is not finite") {
     auto broken = values.irradiance;
     broken[4 * 7] = std::numeric_limits<float>::quiet_NaN();
-    ResultWriter writer(file, scene, placed, scene.output, "0.1.0", "flat");
+    ResultWriter writer(file, scene, placed, OutputChoice{}, "0.1.0", "flat");
     CHECK_THROWS_WITH(writer.rows({0, facets.size(), broken.data(), nullptr, nullptr}), file + ": the irradiance of facet 7 is not finite");
   }
   SECTION("the disk is full, wherever that happens") {
     std::size_t whole = 0;
     {
-      ResultWriter writer(folder / "whole.h5", scene, placed, scene.output, "0.1.0", "flat");
+      ResultWriter writer(folder / "whole.h5", scene, placed, OutputChoice{}, "0.1.0", "flat");
       values.send(writer, 1000);
       writer.finish(small_report());
       whole = content(folder / "whole.h5").size();
@@ -97,7 +97,7 @@ TEST_CASE("A result that is not finished leaves what was there", "[result][compl
       {
         const FileLimit limit(static_cast<rlim_t>(part * static_cast<double>(whole)));
         try {
-          ResultWriter writer(file, scene, placed, scene.output, "0.1.0", "flat");
+          ResultWriter writer(file, scene, placed, OutputChoice{}, "0.1.0", "flat");
           values.send(writer, 1000);
           writer.finish(small_report());
         } catch (const OutputError& error) {
@@ -110,7 +110,7 @@ TEST_CASE("A result that is not finished leaves what was there", "[result][compl
     }
   }
   SECTION("and the next writer works") {
-    ResultWriter writer(file, scene, placed, scene.output, "0.1.0", "flat");
+    ResultWriter writer(file, scene, placed, OutputChoice{}, "0.1.0", "flat");
     values.send(writer, 1000);
     writer.finish(small_report());
     CHECK(Result(file).all<float>("facets/irradiance") == values.irradiance);
@@ -123,7 +123,7 @@ TEST_CASE("Places where no result can be written are named", "[result][complete]
   const Scene scene = small_scene();
   const FacetScene facets = expand(scene);
   const PlacedScene placed = place(scene);
-  const auto write = [&](const std::string& file) { ResultWriter(file, scene, placed, scene.output, "0.1.0", "flat"); };
+  const auto write = [&](const std::string& file) { ResultWriter(file, scene, placed, OutputChoice{}, "0.1.0", "flat"); };
   const std::string nowhere = folder / "no/such/r.h5", directory = folder / "d.h5";
   CHECK_THROWS_WITH(write(nowhere), nowhere + ": cannot be written: No such file or directory");
   std::filesystem::create_directory(directory);
@@ -139,7 +139,7 @@ TEST_CASE("A link to a result stays a link", "[result][complete]") {
   const Scene scene = small_scene();
   const FacetScene facets = expand(scene);
   const PlacedScene placed = place(scene);
-  ResultWriter writer(folder / "link.h5", scene, placed, scene.output, "0.1.0", "flat");
+  ResultWriter writer(folder / "link.h5", scene, placed, OutputChoice{}, "0.1.0", "flat");
   Values(facets).send(writer, 1000);
   writer.finish(small_report());
   CHECK(std::filesystem::is_symlink(folder / "link.h5"));

@@ -32,7 +32,7 @@ struct Stored {
     scene.sensors.push_back({"layers", SensorProfile{0.25, 0.0, 0.5, {{1.0, 1.0}}, {{0.0, 0.0}}}, true, 0});
     const FacetScene facets = expand(scene);
     const PlacedScene copies = place(scene);
-    ResultWriter writer(folder / "r.h5", scene, copies, scene.output, "0.1.0", "flat");
+    ResultWriter writer(folder / "r.h5", scene, copies, OutputChoice{}, "0.1.0", "flat");
     Values(facets).send(writer, 1000);
     auto report = small_report();
     float next = 1;
@@ -102,7 +102,7 @@ TEST_CASE("A scene without lamps and sensors leaves no trace of them in the file
   const Scene scene = small_scene();
   const FacetScene facets = expand(scene);
   const PlacedScene copies = place(scene);
-  ResultWriter writer(folder / "r.h5", scene, copies, scene.output, "0.1.0", "flat");
+  ResultWriter writer(folder / "r.h5", scene, copies, OutputChoice{}, "0.1.0", "flat");
   Values(facets).send(writer, 1000);
   writer.finish(small_report());
   const Result result(folder / "r.h5");

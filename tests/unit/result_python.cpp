@@ -20,7 +20,7 @@ TEST_CASE("An ordinary reader, h5py, opens results as docs/formats-result.md say
   const PlacedScene placed = place(scene);
   const Values values(facets);
   {
-    ResultWriter writer(folder / "r.h5", scene, placed, scene.output, "0.1.0", "reference");
+    ResultWriter writer(folder / "r.h5", scene, placed, OutputChoice{}, "0.1.0", "reference");
     values.send(writer, 1000, true);
     writer.finish(small_report());
   }

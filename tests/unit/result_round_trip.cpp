@@ -42,7 +42,7 @@ TEST_CASE("A result file gives back what was written", "[result]") {
   const Values values(facets);
   const std::string file = folder / "r.h5";
   {
-    ResultWriter writer(file, scene, placed, scene.output, "0.1.0", "flat");
+    ResultWriter writer(file, scene, placed, OutputChoice{}, "0.1.0", "flat");
     values.send(writer, piece);
     Certificate c;
     c.organs = {1, 3};
@@ -153,7 +153,7 @@ TEST_CASE("The same rows give the same bytes", "[result]") {
   const Values values(facets);
   SolveReport report = small_report();
   for (const char* name : {"a.h5", "b.h5"}) {
-    ResultWriter writer(folder / name, scene, placed, scene.output, "0.1.0", "flat");
+    ResultWriter writer(folder / name, scene, placed, OutputChoice{}, "0.1.0", "flat");
     values.send(writer, name[0] == 'a' ? 100 : 1777);
     writer.finish(report);
   }
@@ -218,7 +218,7 @@ TEST_CASE("A scene without sun stores no sunlit fractions, and they read as zero
   const FacetScene facets = expand(scene);
   const PlacedScene placed = place(scene);
   const Values values(facets);
-  ResultWriter writer(folder / "r.h5", scene, placed, scene.output, "0.1.0", "flat");
+  ResultWriter writer(folder / "r.h5", scene, placed, OutputChoice{}, "0.1.0", "flat");
   writer.rows({0, facets.size(), values.irradiance.data(), nullptr, nullptr});
   writer.finish(small_report());
   const Result result(folder / "r.h5");

@@ -75,7 +75,7 @@ struct Stored {
     scene.plants[0].name = "shrub, \"big\"";
     facets = expand(scene);
     const PlacedScene placed = place(scene);
-    ResultWriter writer(folder / "r.h5", scene, placed, scene.output, "0.1.0", "flat");
+    ResultWriter writer(folder / "r.h5", scene, placed, OutputChoice{}, "0.1.0", "flat");
     Values(facets).send(writer, 1000);
     writer.finish(small_report());
   }

@@ -26,7 +26,7 @@ struct Stored {
     scene.plants[0].plant = plant;
     facets = expand(scene);
     const PlacedScene copies = place(scene);
-    ResultWriter writer(folder / "r.h5", scene, copies, scene.output, "0.1.0", "flat");
+    ResultWriter writer(folder / "r.h5", scene, copies, OutputChoice{}, "0.1.0", "flat");
     Values(facets).send(writer, 1000);
     writer.finish(small_report());
   }

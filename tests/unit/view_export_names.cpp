@@ -50,7 +50,7 @@ struct NamedResult {
     scene.optics[0].name = "le_af";
     const FacetScene facets = expand(scene);
     const PlacedScene placed = place(scene);
-    ResultWriter writer(folder / "r.h5", scene, placed, scene.output, "0.1.0", "flat");
+    ResultWriter writer(folder / "r.h5", scene, placed, OutputChoice{}, "0.1.0", "flat");
     Values(facets).send(writer, 1000);
     writer.finish(small_report());
   }

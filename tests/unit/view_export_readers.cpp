@@ -25,7 +25,7 @@ const std::string script = std::string(SUNFLECK_SOURCE_DIR) + "/tests/readers/ch
 void store(const Scene& scene, const std::string& file) {
   const FacetScene facets = expand(scene);
   const PlacedScene placed = place(scene);
-  ResultWriter writer(file, scene, placed, scene.output, "0.1.0", "flat");
+  ResultWriter writer(file, scene, placed, OutputChoice{}, "0.1.0", "flat");
   Values(facets, scene.states.size()).send(writer, 1000);
   SolveReport report = small_report();
   report.balance.resize(scene.states.size());

@@ -28,7 +28,7 @@ Result store(const Folder& folder) {
   const FacetScene facets = expand(scene);
   const PlacedScene placed = place(scene);
   const Values values(facets);
-  ResultWriter writer(folder / "r.h5", scene, placed, scene.output, "0.1.0", "flat");
+  ResultWriter writer(folder / "r.h5", scene, placed, OutputChoice{}, "0.1.0", "flat");
   values.send(writer, 1000);
   writer.finish(small_report());
   return Result(folder / "r.h5");

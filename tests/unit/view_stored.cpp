@@ -14,7 +14,7 @@ namespace {
 std::string stored(const Folder& folder, const Scene& scene, const FacetScene& facets, const char* name = "r.h5") {
   const Values values(facets);
   const PlacedScene placed = place(scene);
-  ResultWriter writer(folder / name, scene, placed, scene.output, "0.1.0", "flat");
+  ResultWriter writer(folder / name, scene, placed, OutputChoice{}, "0.1.0", "flat");
   values.send(writer, 1000);
   writer.finish(small_report());
   return folder / name;
@@ -146,7 +146,7 @@ TEST_CASE("the error of a map is in percent of the reference's mean, and needs a
   for (auto& e : brighter.irradiance) e *= 1.1f;
   {
     const PlacedScene placed = place(scene);
-    ResultWriter writer(folder / "brighter.h5", scene, placed, scene.output, "0.1.0", "flat");
+    ResultWriter writer(folder / "brighter.h5", scene, placed, OutputChoice{}, "0.1.0", "flat");
     brighter.send(writer, 1000);
     writer.finish(small_report());
   }

@@ -32,7 +32,7 @@ std::string stored(const Folder& folder) {
   const FacetScene facets = expand(scene);
   const Values values(facets);
   const PlacedScene placed = place(scene);
-  ResultWriter writer(folder / "r.h5", scene, placed, scene.output, "0.1.0", "flat");
+  ResultWriter writer(folder / "r.h5", scene, placed, OutputChoice{}, "0.1.0", "flat");
   values.send(writer, 1000);
   writer.finish(small_report());
   return folder / "r.h5";

@@ -24,7 +24,7 @@ std::string stored(const std::string& file, const Scene& scene, const FacetScene
   Values values(facets);
   for (auto& e : values.irradiance) e *= factor;
   const PlacedScene placed = place(scene);
-  ResultWriter writer(file, scene, placed, scene.output, "0.1.0", "flat");
+  ResultWriter writer(file, scene, placed, OutputChoice{}, "0.1.0", "flat");
   values.send(writer, 1000);
   writer.finish(small_report());
   return file;

@@ -4,6 +4,7 @@
 #include <sunfleck/core/progress.hpp>
 #include <sunfleck/policy/classes.hpp>
 #include <sunfleck/scene/placed_scene.hpp>
+#include <sunfleck/scene/run_settings.hpp>
 #include <sunfleck/scene/solution.hpp>
 
 namespace sunfleck {

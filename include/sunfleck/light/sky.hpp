@@ -27,12 +27,17 @@ struct Sky {
   std::vector<double> irradiance;         ///< per band, horizontal, unobstructed [W m^-2]
   std::optional<Vec3> sun;                ///< unit vector towards the sun; `clear` needs it (also with the sun's beam left out)
   std::shared_ptr<const SkyTable> table;  ///< `file` needs it; results name the model only
-  double clear_normalisation = 1.0;       ///< set by prepare_sky(): 1 / integral of the unnormalised clear sky
+  double clear_normalisation = 0.0;       ///< set by prepare_sky(): 1 / integral of the unnormalised clear sky; 0 = not yet
 
   /// Relative radiance towards the unit vector d [sr^-1].
   double relative_radiance(const Vec3& d) const;
   bool reaches_below_horizon() const { return model == SkyModel::sphere; }
 };
+
+/// Has prepare_sky() been called, where the model needs it?
+inline bool is_prepared(const Sky& sky) {
+  return sky.model != SkyModel::clear || sky.clear_normalisation > 0;
+}
 
 /// Computes the normalisation of models that have no closed form. Throws InputError if `clear` has no sun direction above the horizon, or
 /// `file` no table.

@@ -3,6 +3,7 @@
 
 #include <sunfleck/core/progress.hpp>
 #include <sunfleck/scene/facets.hpp>
+#include <sunfleck/scene/run_settings.hpp>
 #include <sunfleck/scene/solution.hpp>
 
 namespace sunfleck {

@@ -10,6 +10,7 @@
 #include <sunfleck/result/organ_totals.hpp>
 #include <sunfleck/result/plant_shares.hpp>
 #include <sunfleck/scene/placed_scene.hpp>
+#include <sunfleck/scene/run_settings.hpp>
 #include <sunfleck/scene/solution.hpp>
 
 namespace sunfleck {

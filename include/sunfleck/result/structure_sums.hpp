@@ -4,6 +4,7 @@
 #include <map>
 #include <vector>
 
+#include <sunfleck/scene/absorptance.hpp>
 #include <sunfleck/scene/depth.hpp>
 #include <sunfleck/scene/facet_rows.hpp>
 #include <sunfleck/scene/placed_scene.hpp>
@@ -11,8 +12,8 @@
 
 namespace sunfleck {
 
-/// Does Scene::solve::stop_at name structures within plants that are opened?
-bool stops_inside(const Scene& scene, const PlacedScene& placed);
+/// Does `stop_at` name structures within plants that are opened?
+bool stops_inside(const PlacedScene& placed);
 
 /// The layout of a result that keeps structures instead of facets and organs: no copies; PlacedScene::closed goes on, copy by copy, with a
 /// row for each structure that `stop_at` names, after a row for the rest of its plant where that has facets. Throws InputError if no plant
@@ -35,6 +36,7 @@ class StructureSums final : public IrradianceSink {
   const PlacedScene& layout_;
   IrradianceSink& ground_;
   FacetRows rows_;
+  Absorptance absorptance_;
   std::map<std::uint32_t, std::vector<std::uint32_t>> row_of_organ_;  ///< by plant; rows count from the copy's first
   std::vector<std::size_t> first_row_;                                ///< [copies]
   std::vector<double> sums_;

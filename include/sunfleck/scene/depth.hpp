@@ -19,6 +19,14 @@ struct StopAt {
   bool empty() const { return type.empty() && !size && !leaf_count; }
 };
 
+/// Which placements are opened, and down to what; by default all, down to facets.
+struct Depth {
+  std::vector<std::string> only;  ///< placements that are opened (PathPatterns); empty = all
+  StopAt stop_at;                 ///< structures at which opening ends; empty = facets
+
+  bool whole() const { return only.empty() && stop_at.empty(); }
+};
+
 /// "branch", "size=0.5" [m] or "leaf_count=20". Throws UsageError.
 StopAt stop_from_text(const std::string& text);
 

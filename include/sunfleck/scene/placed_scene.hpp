@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include <sunfleck/scene/depth.hpp>
 #include <sunfleck/scene/scene.hpp>
 
 namespace sunfleck {
@@ -107,7 +108,8 @@ struct PlacedScene {
   std::uint64_t first_ground_facet = 0, first_ground_organ = 0;
   std::uint64_t facets = 0, organs = 0;  ///< in all
 
-  // What Scene::solve leaves closed (`only`, `stop_at` at whole plants and groups): no rows. The ground has rows unless `only` is given.
+  Depth depth;  ///< as place() was asked
+  // What it leaves closed (`only`, `stop_at` at whole plants and groups): no rows. The ground has rows unless `only` is given.
   std::vector<ClosedStructure> closed;
   std::vector<ClosedCopy> near;       ///< copies in which light is solved: named by `stop_at`, or near what is opened or in its sun
   std::vector<ClosedCopy> far;        ///< copies that rays meet; light that leaves them is that of copies alike that are solved
@@ -130,14 +132,14 @@ struct PlacedScene {
   const ClosedCopy& closed_copy(std::size_t copy) const { return copy < solved() ? near[copy - copies.size()] : far[copy - solved()]; }
 };
 
-/// Lays out a scene that has passed check_scene(): what Scene::solve says is opened has rows; of the rest, copies near what is opened are
+/// Lays out a scene that has passed check_scene(): what `depth` says is opened has rows; of the rest, copies near what is opened are
 /// listed, and groups farther away are never entered, so that 10^8 copies cost nothing. Copies count as near within two plant sizes, or
 /// if they stand between what is opened and a sun; farther ones are listed as far as 50 plant heights, at most 50,000. Scenes of at most
 /// 2 million facets and periodic ones are near as a whole. Throws InputError if there is no facet, more copies than memory holds, or a
 /// pattern of `only` that meets nothing.
 /// `most_copies`: of scenes with more, as large a part of every plant's and group's placements is listed, for estimates; `facets` and
 /// `organs` count that part. Not with `only` and `stop_at`.
-PlacedScene place(const Scene& scene, std::uint64_t most_copies = std::numeric_limits<std::uint64_t>::max());
+PlacedScene place(const Scene& scene, const Depth& depth = {}, std::uint64_t most_copies = std::numeric_limits<std::uint64_t>::max());
 
 /// The same scene with rows for what is near and far as well, after those of what is opened, and, with `only`, for the ground about it.
 PlacedScene with_surroundings(const PlacedScene& placed);

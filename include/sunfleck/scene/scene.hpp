@@ -13,7 +13,6 @@
 #include <sunfleck/light/state.hpp>
 #include <sunfleck/plant/optics.hpp>
 #include <sunfleck/plant/plant.hpp>
-#include <sunfleck/scene/depth.hpp>
 #include <sunfleck/scene/lamp.hpp>
 #include <sunfleck/scene/placement.hpp>
 #include <sunfleck/scene/sensor.hpp>
@@ -59,28 +58,6 @@ struct GroupEntry {
   std::vector<Placement> placements;  ///< in the world
 };
 
-/// What the result file keeps.
-struct OutputChoice {
-  bool facets = true;               ///< false keeps organs only
-  std::vector<std::string> fields;  ///< dataset names as in the result ("facets/irradiance"); empty = all
-};
-
-/// Names that [output] fields may list: "facets/irradiance", ... Rows of names and places are always kept.
-const std::vector<std::string>& output_fields();
-
-enum class Quality { draft, standard, fine };
-
-/// The scene's own [solve] table; the command line takes precedence.
-struct SolveChoice {
-  std::optional<Quality> quality;
-  std::optional<std::string> method;
-  std::optional<std::uint64_t> seed;
-  std::optional<bool> certificate;
-  std::optional<std::uint32_t> samples;  ///< reference method: per facet
-  std::vector<std::string> only;         ///< placements that are opened (PathPatterns); empty = all
-  StopAt stop_at;                        ///< structures at which opening ends; empty = facets
-};
-
 struct Scene {
   std::string file;  ///< empty if built in memory
   std::string text;  ///< TOML as read
@@ -94,8 +71,6 @@ struct Scene {
   std::vector<GroupEntry> groups;
   std::vector<LampEntry> lamps;
   std::vector<SensorEntry> sensors;
-  OutputChoice output;
-  SolveChoice solve;
   std::vector<std::string> notes;  ///< what the reader wants the user to know ("sun below the horizon in state ...")
 
   std::size_t band_count() const { return bands.size(); }

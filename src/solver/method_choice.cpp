@@ -1,6 +1,5 @@
-#include "cli/method_choice.hpp"
+#include <sunfleck/solver/method_choice.hpp>
 
-#include <array>
 #include <vector>
 
 #include <fmt/format.h>
@@ -8,24 +7,22 @@
 #include <sunfleck/core/error.hpp>
 #include <sunfleck/core/names.hpp>
 #include <sunfleck/instantiation/plan.hpp>
+#include <sunfleck/instantiation/solve.hpp>
 #include <sunfleck/light/wide_sun.hpp>
 #include <sunfleck/policy/policy_toml.hpp>
 #include <sunfleck/scene/counts.hpp>
 #include <sunfleck/scene/extent.hpp>
 
-#include "cli/text_units.hpp"
+#include <sunfleck/core/text_units.hpp>
 
 namespace sunfleck {
 
 namespace {
 
-const std::vector<std::string> methods{"instantiation", "clustering", "flat", "direct", "reference"};
-
 constexpr double much_covered = 64;  // periodic cells that one plant covers
 
-constexpr std::array<Quality, 3> qualities{Quality::draft, Quality::standard, Quality::fine};
-
 std::string checked_method(const std::string& name) {
+  const auto& methods = method_names();
   for (const auto& known : methods)
     if (name == known) return name;
   const std::string near = nearest_name(name, methods);
@@ -33,35 +30,7 @@ std::string checked_method(const std::string& name) {
                                near.empty() ? "" : " (did you mean '" + near + "'?)"));
 }
 
-Quality quality_from_name(const std::string& name) {
-  for (const auto known : qualities)
-    if (name == name_of(known)) return known;
-  throw UsageError(fmt::format("--quality: found '{}'; expected one of draft, standard, fine", name));
-}
-
 }  // namespace
-
-std::string name_of(Quality quality) {
-  switch (quality) {
-    case Quality::draft:
-      return "draft";
-    case Quality::standard:
-      return "standard";
-    case Quality::fine:
-      return "fine";
-  }
-  return {};
-}
-
-MethodChoice choose_method(const std::optional<std::string>& method, const std::optional<std::string>& quality, const SolveChoice& scene) {
-  MethodChoice choice;
-  choice.method = checked_method(method ? *method : scene.method.value_or("clustering"));
-  if (quality)
-    choice.quality = quality_from_name(*quality);
-  else
-    choice.quality = scene.quality.value_or(Quality::standard);
-  return choice;
-}
 
 MethodReason default_method(const Scene& scene, Quality quality, Progress& progress) {
   if (!scene.lamps.empty()) return {"clustering", "instantiation knows no lamps"};
@@ -76,7 +45,7 @@ MethodReason default_method(const Scene& scene, Quality quality, Progress& progr
   settings.density = instantiation_density(quality);
   const auto classes = classes_of_policies(scene);
   settings.classes = classes ? &*classes : nullptr;
-  const auto plan = plan_sharing(scene, place(scene, most_copies_in_plan), settings, progress);
+  const auto plan = plan_sharing(scene, place(scene, {}, most_copies_in_plan), settings, progress);
   if (plan.tangled > much_tangled)
     return {"clustering",
             fmt::format("{:.1f} % of what is seen inside plants is hidden by others that reach into them, or by the ground: too much for "
@@ -89,26 +58,25 @@ MethodReason default_method(const Scene& scene, Quality quality, Progress& progr
                                        plan.originals == 1 ? "original" : "originals")};
 }
 
-MethodChoice choose_method(const std::optional<std::string>& method, const std::optional<std::string>& quality, const Scene& scene,
-                           Progress& progress) {
-  auto choice = choose_method(method, quality, scene.solve);
-  if (method || scene.solve.method) return choice;
+MethodChoice choose_method(const RunSettings& run, const Scene& scene, Progress& progress) {
+  MethodChoice choice;
+  choice.quality = run.quality.value_or(run.error.empty() ? Quality::standard : Quality::draft);
+  if (run.method) {
+    choice.method = checked_method(*run.method);
+    return choice;
+  }
   auto reason = default_method(scene, choice.quality, progress);
   choice.method = std::move(reason.method);
   choice.why = std::move(reason.why);
   return choice;
 }
 
-void refuse_depth(const Scene& scene, const std::string& method) {
-  if (method == "instantiation" || (scene.solve.only.empty() && scene.solve.stop_at.empty())) return;
-  const bool stops = !scene.solve.stop_at.empty();
+void refuse_depth(const Scene& scene, const Depth& depth, const std::string& method) {
+  if (method == "instantiation" || depth.whole()) return;
+  const bool stops = !depth.stop_at.empty();
   if (stops || method != "reference")
     throw InputError(location(scene.file, 0, stops ? "solve.stop_at" : "solve.only"), "it with method " + method,
                      stops ? "method instantiation" : "method instantiation or reference");
-}
-
-RadiosityMethod radiosity_method(const std::string& method) {
-  return method == "flat" ? RadiosityMethod::flat : method == "direct" ? RadiosityMethod::direct : RadiosityMethod::clustering;
 }
 
 }  // namespace sunfleck

@@ -8,10 +8,9 @@
 #include <vector>
 
 #include <sunfleck/audit/verdict.hpp>
-#include <sunfleck/core/progress.hpp>
 #include <sunfleck/scene/scene.hpp>
 
-#include "cli/method_choice.hpp"
+#include <sunfleck/solver/method_choice.hpp>
 
 namespace sunfleck {
 
@@ -23,16 +22,14 @@ class SecondTry {
   /// Does a solve by this method fit into memory? If not, why.
   using Fits = std::function<bool(const MethodChoice&, std::string& why_not)>;
 
-  /// `named`: the user asked for the method, by the command line or the scene.
-  SecondTry(const Scene& scene, bool named, Fits fits) : scene_(scene), named_(named), fits_(std::move(fits)) {}
+  SecondTry(const RunSettings& run, Fits fits) : run_(run), fits_(std::move(fits)) {}
 
   /// The choice to solve again with; nothing where there is none, and then advice() says what the user may do.
   std::optional<MethodChoice> next(const MethodChoice& failed);
   const std::string& advice() const { return advice_; }
 
  private:
-  const Scene& scene_;
-  bool named_;
+  const RunSettings& run_;
   Fits fits_;
   int tries_ = 0;
   std::string advice_;
@@ -53,7 +50,7 @@ Aims aims_of(const MethodChoice& choice, const std::vector<double>& goal, const 
 /// "an error of 9.31 % in NIR, 7.50 % at least, where quality standard aims at 2 %".
 std::string text_of(const Contradiction& found, const Aims& aims, const Scene& scene);
 
-/// The last line of a solve that no try mended.
-void say_inaccurate(const Contradiction& found, const Aims& aims, const Scene& scene, const std::string& advice, Progress& progress);
+/// What is said of a solve that no try mended.
+std::string inaccurate_text(const Contradiction& found, const Aims& aims, const Scene& scene, const std::string& advice);
 
 }  // namespace sunfleck

@@ -1,4 +1,4 @@
-#include "cli/solve_again.hpp"
+#include "solver/solve_again.hpp"
 
 #include <algorithm>
 #include <set>
@@ -89,18 +89,18 @@ bool refine_further(const Scene& scene, const SolveReport& report, Certificate& 
   return true;
 }
 
-void say_not_reached(const Scene& scene, const Refinement& refinement, const Certificate& certificate, Progress& progress) {
+std::string not_reached_text(const Scene& scene, const Refinement& refinement, const Certificate& certificate) {
   const auto& goal = refinement.goal();
   std::string intervals;
   for (std::size_t b = 0; b < goal.size(); ++b)
     if (goal[b] > 0)
       intervals += fmt::format("{}{} {:.2f} to {:.2f} %", intervals.empty() ? "" : ", ", scene.bands[b], 100.0 * certificate.rmse_low[b],
                                100.0 * certificate.rmse_high[b]);
-  progress.line(fmt::format(
-      "sunfleck: the wanted error, {}, was not reached: about {} is found (95 % interval of the certificate: {}). The result is written "
-      "with status 'not_converged'. For less: another method, or --method reference with as many --samples as it takes",
+  return fmt::format(
+      "the wanted error, {}, was not reached: about {} is found (95 % interval of the certificate: {}). The result has "
+      "status 'not_converged'. For less: another method, or method reference with as many samples as it takes",
       percent_of_bands(scene, goal, [&](std::size_t b) { return goal[b]; }),
-      percent_of_bands(scene, goal, [&](std::size_t b) { return refinement.found(b); }), intervals));
+      percent_of_bands(scene, goal, [&](std::size_t b) { return refinement.found(b); }), intervals);
 }
 
 }  // namespace sunfleck

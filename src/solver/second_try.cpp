@@ -1,4 +1,4 @@
-#include "cli/second_try.hpp"
+#include "solver/second_try.hpp"
 
 #include <algorithm>
 
@@ -28,12 +28,12 @@ double fineness_of(const MethodChoice& choice) {
 
 std::optional<MethodChoice> SecondTry::next(const MethodChoice& failed) {
   const bool shares = failed.method == "instantiation";
-  if (named_) {
+  if (run_.method) {
     advice_ = fmt::format("Method '{}' was asked for and is kept: leave the choice to the program, or ask for {}", failed.method,
                           failed.method == "clustering" ? "--quality fine or method reference" : "clustering or reference");
     return std::nullopt;
   }
-  if (shares && (!scene_.solve.only.empty() || !scene_.solve.stop_at.empty())) {
+  if (shares && !run_.depth.whole()) {
     advice_ =
         "What stays closed ('only', 'stop_at') is known to method instantiation alone: open the whole scene, or ask for method reference";
     return std::nullopt;
@@ -63,9 +63,8 @@ std::string text_of(const Contradiction& found, const Aims& aims, const Scene& s
                      100.0 * found.found, scene.bands[found.band], 100.0 * found.at_least, aims.who, 100.0 * found.aim);
 }
 
-void say_inaccurate(const Contradiction& found, const Aims& aims, const Scene& scene, const std::string& advice, Progress& progress) {
-  progress.line(fmt::format("sunfleck: inaccurate: the certificate finds {}. The result is written with status 'inaccurate'. {}",
-                            text_of(found, aims, scene), advice));
+std::string inaccurate_text(const Contradiction& found, const Aims& aims, const Scene& scene, const std::string& advice) {
+  return fmt::format("inaccurate: the certificate finds {}. The result has status 'inaccurate'. {}", text_of(found, aims, scene), advice);
 }
 
 }  // namespace sunfleck

@@ -2,7 +2,7 @@
 
 #include <sunfleck/core/error.hpp>
 
-#include "cli/method_choice.hpp"
+#include <sunfleck/solver/method_choice.hpp>
 #include "reference_runs.hpp"
 
 using namespace sunfleck;

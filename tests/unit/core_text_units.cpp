@@ -1,6 +1,6 @@
 #include <catch2/catch.hpp>
 
-#include "cli/text_units.hpp"
+#include <sunfleck/core/text_units.hpp>
 
 using namespace sunfleck;
 

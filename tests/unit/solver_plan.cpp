@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <memory>
 
-#include "cli/plan.hpp"
+#include <sunfleck/solver/plan.hpp>
 
 using namespace sunfleck;
 

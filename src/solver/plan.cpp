@@ -1,4 +1,4 @@
-#include "cli/plan.hpp"
+#include <sunfleck/solver/plan.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -6,15 +6,15 @@
 #include <fmt/format.h>
 
 #include <sunfleck/core/names.hpp>
-#include <sunfleck/instantiation/fineness.hpp>
 #include <sunfleck/instantiation/plan.hpp>
 #include <sunfleck/policy/policy_toml.hpp>
-#include <sunfleck/radiosity/fineness.hpp>
 #include <sunfleck/radiosity/plan.hpp>
 #include <sunfleck/scene/facets.hpp>
 
-#include "cli/bytes_of_scene.hpp"
-#include "cli/text_units.hpp"
+#include <sunfleck/core/text_units.hpp>
+
+#include "solver/bytes_of_scene.hpp"
+#include "solver/method_settings.hpp"
 
 namespace sunfleck {
 
@@ -114,11 +114,11 @@ void add_scattering(const Scene& scene, const std::string& method, std::vector<P
                                  : "no optics transmits in any band"});
 }
 
-void add_certificate(const Scene& scene, const std::string& method, std::vector<PlanItem>& items) {
+void add_certificate(const std::string& method, bool wanted, std::vector<PlanItem>& items) {
   if (method == "reference")
     items.push_back({"certificate", false, "the reference carries the variance of its own means"});
-  else if (scene.solve.certificate && !*scene.solve.certificate)
-    items.push_back({"certificate", false, "the scene turns it off"});
+  else if (!wanted)
+    items.push_back({"certificate", false, "the run turns it off"});
   else
     items.push_back({"certificate", true, "some organs are checked by path tracing after the solve"});
 }
@@ -155,12 +155,9 @@ void add_policies(const Scene& scene, const std::string& method, const Instantia
 }
 
 /// Originals, their operators, and what copies hold.
-void add_instantiation(const Scene& scene, const PlacedScene& placed, const MethodChoice& choice, int threads, Progress& progress,
-                       Plan& plan) {
-  InstantiationSettings settings;
-  settings.density = choice.fineness ? instantiation_density_at(*choice.fineness) : instantiation_density(choice.quality);
-  settings.threads = threads;
-  if (scene.solve.seed) settings.seed = *scene.solve.seed;
+void add_instantiation(const Scene& scene, const PlacedScene& placed, const MethodChoice& choice, const RunSettings& run,
+                       Progress& progress, Plan& plan) {
+  auto settings = instantiation_settings(choice, run);
   const auto classes = classes_of_policies(scene);
   settings.classes = classes ? &*classes : nullptr;
   const auto predicted = plan_instantiation(scene, placed, settings, progress);
@@ -214,7 +211,7 @@ std::uint64_t most_at_once(const std::vector<PlanFigure>& memory) {
 }
 
 /// Elements, links and lines of the radiosity methods.
-void add_radiosity(const Scene& scene, const MethodChoice& choice, Progress& progress, Plan& plan) {
+void add_radiosity(const Scene& scene, const MethodChoice& choice, const RunSettings& run, Progress& progress, Plan& plan) {
   if (choice.method == "reference") {
     plan.items.push_back({"elements", false, "the reference traces paths facet by facet, without elements or links"});
     plan.at_once = most_at_once(plan.memory);
@@ -224,9 +221,7 @@ void add_radiosity(const Scene& scene, const MethodChoice& choice, Progress& pro
     plan.items.push_back({"prediction", false, fmt::format("elements and links are predicted for up to {} facets only", most_laid_out)});
     return;
   }
-  RadiositySettings settings;
-  settings.density = choice.fineness ? density_at(*choice.fineness) : density_of(choice.quality);
-  settings.method = radiosity_method(choice.method);
+  const auto settings = radiosity_settings(choice, run);
   const FacetScene facets = expand(scene);
   if (facets.zero_area_facets == facets.size()) {
     plan.items.push_back({"prediction", false, "no facet has an area"});
@@ -256,8 +251,9 @@ void add_radiosity(const Scene& scene, const MethodChoice& choice, Progress& pro
   add("links", "links", predicted.links);
 }
 
-Plan plan_of(const Scene& scene, const MethodChoice& choice, Progress& progress, std::uint64_t program, int threads) {
-  refuse_depth(scene, choice.method);
+Plan plan_of(const Scene& scene, const MethodChoice& choice, const RunSettings& run, Progress& progress, std::uint64_t program) {
+  refuse_depth(scene, run.depth, choice.method);
+  const bool certificate = run.certificate.value_or(true);
   Plan plan;
   plan.choice = choice;
   plan.counts = count(scene);
@@ -265,9 +261,9 @@ Plan plan_of(const Scene& scene, const MethodChoice& choice, Progress& progress,
   add_devices(scene, choice.method, plan.items);
   add_geometry(scene, plan.counts, plan.items);
   add_scattering(scene, choice.method, plan.items);
-  add_certificate(scene, choice.method, plan.items);
+  add_certificate(choice.method, certificate, plan.items);
   const bool shares = choice.method == "instantiation";
-  const PlacedScene placed = shares ? place(scene, most_copies_in_plan) : PlacedScene{};
+  const PlacedScene placed = shares ? place(scene, run.depth, most_copies_in_plan) : PlacedScene{};
   const bool whole = shares && placed.share == 1;
   const std::uint64_t facets = whole ? placed.facets : plan.counts.facets();  // `only` and `stop_at` leave some closed
   if (program > 0) plan.memory.push_back({"program", "the program as it starts", program});
@@ -278,10 +274,10 @@ Plan plan_of(const Scene& scene, const MethodChoice& choice, Progress& progress,
     const std::uint64_t tree = tree_bytes(plan.counts);
     if (choice.method == "reference")
       plan.memory.push_back({"tree of rays", "tree of rays, to follow paths", tree});
-    else if (scene.solve.certificate.value_or(true))
+    else if (certificate)
       plan.memory.push_back({"certificate", "tree of rays of the certificate, after the solve", tree});
   }
-  const bool all_open = scene.solve.only.empty() && scene.solve.stop_at.empty();
+  const bool all_open = run.depth.whole();
   const std::uint64_t layout = all_open ? layout_bytes(plan.counts) : 0, file = all_open ? row_bytes(scene, plan.counts) : 0;
   if (all_open) plan.memory.push_back({"layout", "copies, and names of them and of ground cells", layout});
   if (all_open) plan.memory.push_back({"file", "sums and rows on their way into the file", file});
@@ -289,10 +285,10 @@ Plan plan_of(const Scene& scene, const MethodChoice& choice, Progress& progress,
                {"organs", "organs", whole ? placed.organs : plan.counts.organs},
                {"result_bytes", "result bytes before compression", facets * result_bytes_per_facet(scene)}};
   if (shares) {
-    add_instantiation(scene, placed, choice, threads, progress, plan);
+    add_instantiation(scene, placed, choice, run, progress, plan);
   } else {
     add_policies(scene, choice.method, nullptr, plan.items);
-    add_radiosity(scene, choice, progress, plan);
+    add_radiosity(scene, choice, run, progress, plan);
   }
   if (shares) plan.at_once += program + layout + file;
   return plan;
@@ -327,12 +323,12 @@ void extrapolate(const std::vector<PlanFigure>& less, std::vector<PlanFigure>& m
 
 }  // namespace
 
-Plan make_plan(const Scene& scene, const MethodChoice& choice, Progress& progress, std::uint64_t program, int threads) {
+Plan make_plan(const Scene& scene, const MethodChoice& choice, const RunSettings& run, Progress& progress, std::uint64_t program) {
   const auto counts = count(scene);
   if (!scene.ground || scene.ground->mesh || counts.ground_facets <= most_ground_laid_out)
-    return plan_of(scene, choice, progress, program, threads);
-  const Plan less = plan_of(with_less_ground(scene, most_ground_laid_out / 8), choice, progress, program, threads);
-  Plan plan = plan_of(with_less_ground(scene, most_ground_laid_out / 4), choice, progress, program, threads);
+    return plan_of(scene, choice, run, progress, program);
+  const Plan less = plan_of(with_less_ground(scene, most_ground_laid_out / 8), choice, run, progress, program);
+  Plan plan = plan_of(with_less_ground(scene, most_ground_laid_out / 4), choice, run, progress, program);
   const auto grown = static_cast<double>(plan.counts.ground_facets - less.counts.ground_facets);
   const double steps = static_cast<double>(counts.ground_facets - plan.counts.ground_facets) / grown;
   extrapolate(less.memory, plan.memory, steps);

@@ -1,4 +1,4 @@
-// solve --error: what is done and said between one solve and the next.
+// Where an error is wanted: what is done and said between one solve and the next.
 #pragma once
 
 #include <cstdint>
@@ -11,8 +11,8 @@
 #include <sunfleck/scene/scene.hpp>
 #include <sunfleck/scene/solution.hpp>
 
-#include "cli/method_choice.hpp"
-#include "cli/refinement.hpp"
+#include <sunfleck/solver/method_choice.hpp>
+#include "solver/refinement.hpp"
 
 namespace sunfleck {
 
@@ -27,6 +27,7 @@ std::vector<std::uint64_t> rows_of(const std::vector<ChosenOrgan>& a, const std:
 bool refine_further(const Scene& scene, const SolveReport& report, Certificate& certificate, const std::vector<SolveDifference>& to_earlier,
                     Refinement& refinement, MethodChoice& choice, Progress& progress);
 
-void say_not_reached(const Scene& scene, const Refinement& refinement, const Certificate& certificate, Progress& progress);
+/// What is said of a wanted error that no solve has reached.
+std::string not_reached_text(const Scene& scene, const Refinement& refinement, const Certificate& certificate);
 
 }  // namespace sunfleck

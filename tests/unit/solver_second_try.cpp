@@ -1,7 +1,7 @@
 // Which method comes after one that its certificate contradicts.
 #include <catch2/catch.hpp>
 
-#include "cli/second_try.hpp"
+#include "solver/second_try.hpp"
 
 using namespace sunfleck;
 

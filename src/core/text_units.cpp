@@ -1,4 +1,4 @@
-#include "cli/text_units.hpp"
+#include <sunfleck/core/text_units.hpp>
 
 #include <fmt/format.h>
 

@@ -10,7 +10,7 @@
 #include <sunfleck/scene/counts.hpp>
 #include <sunfleck/scene/scene.hpp>
 
-#include "cli/method_choice.hpp"
+#include <sunfleck/solver/method_choice.hpp>
 
 namespace sunfleck {
 
@@ -39,7 +39,7 @@ struct Plan {
 };
 
 /// Lays the scene's copies out (up to 20 million facets; instantiation: its originals) and traces a pilot of few lines to predict links.
-/// `program`: bytes that the process held before it read anything. `threads`: of the solve that is planned; 0 is all cores.
-Plan make_plan(const Scene& scene, const MethodChoice& choice, Progress& progress, std::uint64_t program = 0, int threads = 0);
+/// `program`: bytes that the process held before it read anything.
+Plan make_plan(const Scene& scene, const MethodChoice& choice, const RunSettings& run, Progress& progress, std::uint64_t program = 0);
 
 }  // namespace sunfleck

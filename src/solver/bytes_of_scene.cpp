@@ -1,4 +1,4 @@
-#include "cli/bytes_of_scene.hpp"
+#include "solver/bytes_of_scene.hpp"
 
 #include <algorithm>
 #include <string>

@@ -1,4 +1,4 @@
-#include "cli/refinement.hpp"
+#include "solver/refinement.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "cli/memory_need.hpp"
+#include "solver/memory_need.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,10 +9,10 @@
 #include <sunfleck/core/error.hpp>
 #include <sunfleck/core/memory.hpp>
 
-#include "cli/bytes_of_scene.hpp"
-#include "cli/plan.hpp"
-#include "cli/second_try.hpp"
-#include "cli/text_units.hpp"
+#include "solver/bytes_of_scene.hpp"
+#include <sunfleck/solver/plan.hpp>
+#include "solver/second_try.hpp"
+#include <sunfleck/core/text_units.hpp>
 
 namespace sunfleck {
 
@@ -36,11 +36,11 @@ std::string label(const Scene& scene) {
 }
 
 /// By its plan; by what the facets alone take where not even that fits.
-bool fits(const Scene& scene, const SceneCounts& counts, const MethodChoice& choice, const FreeMemory& free, std::uint64_t program,
-          int threads, std::string& why_not, Progress& progress) {
+bool fits(const Scene& scene, const SceneCounts& counts, const MethodChoice& choice, const FreeMemory& free, const RunSettings& run,
+          std::uint64_t program, std::string& why_not, Progress& progress) {
   const std::uint64_t least = choice.method == "instantiation" ? 0 : layout_bytes(counts) + expanded_bytes(counts);
   const bool surely_not = least > room(free);
-  const std::uint64_t needed = surely_not ? least : make_plan(scene, choice, progress, program, threads).memory_total();
+  const std::uint64_t needed = surely_not ? least : make_plan(scene, choice, run, progress, program).memory_total();
   if (needed <= room(free)) return true;
   why_not = fmt::format("needs {} {}, {}", surely_not ? "at least" : "about", text_of(needed), free_text(free));
   return false;
@@ -60,28 +60,27 @@ std::uint64_t generous_bytes(const Scene& scene, const SceneCounts& counts, cons
   return start + counts.facets() * (pairs * of_facet + of_column * columns) + copies_of(counts) * 200;
 }
 
-void refuse_layout(const Scene& scene, const SceneCounts& counts, const FreeMemory& free) {
-  const bool partial = !scene.solve.only.empty() || !scene.solve.stop_at.empty();
-  const std::uint64_t least = partial ? 0 : layout_bytes(counts);
+void refuse_layout(const Scene& scene, const SceneCounts& counts, const Depth& depth, const FreeMemory& free) {
+  const std::uint64_t least = depth.whole() ? layout_bytes(counts) : 0;
   if (least > room(free))
     throw OutOfMemory(fmt::format("{}: its {} and {} of the ground take {} before anything is solved, {}; fewer copies or ground cells",
                                   label(scene), counted(copies_of(counts), "copy", "copies"),
                                   counted(counts.ground_facets, "facet", "facets"), text_of(least), free_text(free)));
 }
 
-void refuse_memory(const Scene& scene, const SceneCounts& counts, const MethodChoice& choice, const FreeMemory& free, std::uint64_t program,
-                   int threads, Progress& progress) {
+void refuse_memory(const Scene& scene, const SceneCounts& counts, const MethodChoice& choice, const RunSettings& run,
+                   const FreeMemory& free, std::uint64_t program, Progress& progress) {
   std::string why_not;
-  if (generous_bytes(scene, counts, choice) > room(free) && !fits(scene, counts, choice, free, program, threads, why_not, progress))
+  if (generous_bytes(scene, counts, choice) > room(free) && !fits(scene, counts, choice, free, run, program, why_not, progress))
     throw OutOfMemory(fmt::format("{}: method {} at quality {} {}", label(scene), choice.method, name_of(choice.quality), why_not));
 }
 
-bool fits_in_memory(const Scene& scene, const MethodChoice& choice, std::uint64_t program, int threads, std::string& why_not,
+bool fits_in_memory(const Scene& scene, const MethodChoice& choice, const RunSettings& run, std::uint64_t program, std::string& why_not,
                     Progress& progress) {
   const auto free = free_memory();
   const auto counts = count(scene);
   if (generous_bytes(scene, counts, choice) <= room(free)) return true;
-  return fits(scene, counts, choice, free, program, threads, why_not, progress);
+  return fits(scene, counts, choice, free, run, program, why_not, progress);
 }
 
 }  // namespace sunfleck
