@@ -20,6 +20,7 @@ class SceneFiles {
     }
   }
   Scene read() const { return read_scene(scene_.path); }
+  SceneFile read_file() const { return read_scene_file(scene_.path); }
   /// The InputError of reading, with paths as seen from the folder; empty if there is none.
   std::string message() const {
     return message_of(scene_, [&] { read(); });

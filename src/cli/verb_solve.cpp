@@ -8,11 +8,9 @@
 #include <sunfleck/core/error.hpp>
 #include <sunfleck/core/memory.hpp>
 #include <sunfleck/core/text_units.hpp>
-#include <sunfleck/core/version.hpp>
 #include <sunfleck/format/scene_toml.hpp>
-#include <sunfleck/result/result_writer.hpp>
 #include <sunfleck/scene/plant_sizes.hpp>
-#include <sunfleck/solver/solve.hpp>
+#include <sunfleck/solver/result_file.hpp>
 #include <sunfleck/view/picture_sink.hpp>
 
 #include "cli/error_option.hpp"
@@ -27,37 +25,26 @@ namespace {
 constexpr int not_as_asked = 3;  // exit code: did not converge, is inaccurate, or misses a wanted error
 
 /// A result file, and a picture where one is wanted.
-class FileSink final : public LightSink {
+class FileAndPicture final : public ResultFile {
  public:
-  FileSink(std::string file, OutputChoice output, bool draws, Progress& progress)
-      : file_(std::move(file)), output_(std::move(output)), draws_(draws), progress_(progress) {}
+  FileAndPicture(std::string file, OutputChoice output, bool draws, Progress& progress)
+      : ResultFile(std::move(file), std::move(output)), draws_(draws), progress_(progress) {}
 
   IrradianceSink& begin(const SolveStart& start) override {
     picture_.reset();
-    writer_.reset();
-    writer_.emplace(file_, start.scene, start.rows, output_, software_version(), start.method);
-    if (!start.totals.empty()) writer_->keep_totals(start.totals);
-    of_structures_ = &start.rows != &start.placed;
+    IrradianceSink& rows = ResultFile::begin(start);
     if (draws_) picture_.emplace(start.scene, start.placed, 0, PictureSettings{}, nullptr, progress_);
-    return *writer_;
+    return rows;
   }
   IrradianceSink* watcher() override { return picture_ ? &*picture_ : nullptr; }
   void end(Progress& progress) override {
     if (picture_) image_ = picture_->draw(progress).image;
   }
-  const OrganTotals& totals() const override { return writer_->totals(); }
-  void finish(const SolveReport& report, const Certificate* certificate) override { writer_->finish(report, certificate); }
-
-  /// What each plant absorbs; null where structures are kept in the place of organs.
-  const PlantShares* plant_shares() const { return of_structures_ ? nullptr : &writer_->plant_shares(); }
   const std::optional<Image>& image() const { return image_; }
 
  private:
-  std::string file_;
-  OutputChoice output_;
-  bool draws_, of_structures_ = false;
+  bool draws_;
   Progress& progress_;
-  std::optional<ResultWriter> writer_;
   std::optional<PictureSink> picture_;
   std::optional<Image> image_;
 };
@@ -109,7 +96,7 @@ int verb_solve(const SolveOptions& options, Progress& progress) {
   progress.line(sizes_text(file.scene, scene_sizes(file.scene)));
   caller.read_seconds = total.seconds();
 
-  FileSink sink(options.result, file.output, options.picture.has_value(), progress);
+  FileAndPicture sink(options.result, file.output, options.picture.has_value(), progress);
   const RunSettings run = run_of(options, file.run);
   const SolveResult result = solve(file.scene, run, sink, progress, caller);
   if (sink.image()) write_png(*sink.image(), *options.picture);  // before the table, which a closed pipe may end

@@ -152,6 +152,7 @@ class Run {
     progress_.check();
     rows_.emplace(scene_, placed_);
     result_.facets = placed_.facets;
+    result_.depth = run_.depth;
   }
 
   void choose_certified() {

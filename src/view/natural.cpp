@@ -104,7 +104,7 @@ Picture draw_natural(const DrawnScene& scene, const LightSource& light, const Pi
   return picture;
 }
 
-LightSource light_source(const FacetLight& light, std::size_t facets) {
+LightSource light_source(const StateLight& light, std::size_t facets) {
   const std::size_t b = light.bands.size();
   if (light.irradiance.size() != 2 * facets * b) throw Error("draw_natural: irradiance does not match the scene");
   const auto part = [](const std::vector<float>& all, std::size_t width) {
@@ -121,7 +121,7 @@ LightSource light_source(const FacetLight& light, std::size_t facets) {
   return source;
 }
 
-Image draw_natural(const FacetScene& scene, const FacetLight& light, const PictureSettings& settings, Progress& progress) {
+Image draw_natural(const FacetScene& scene, const StateLight& light, const PictureSettings& settings, Progress& progress) {
   const LightSource source = light_source(light, scene.size());
   return draw_natural(DrawnScene(scene), source, settings, progress).image;
 }

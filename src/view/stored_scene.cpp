@@ -130,9 +130,9 @@ LightSource stored_light(const Result& result, const DrawnScene& scene, std::siz
   return light;
 }
 
-FacetLight stored_light(const Result& result, const FacetScene& scene, std::size_t state) {
+StateLight stored_light(const Result& result, const FacetScene& scene, std::size_t state) {
   const std::size_t n = scene.size(), b = result.bands().size();
-  FacetLight light;
+  StateLight light;
   light.bands = result.bands(), light.sun = result.states().at(state).sun;
   if (result.has("facets/irradiance")) {
     light.irradiance = result.state_rows<float>("facets/irradiance", state, 0, n);

@@ -44,7 +44,7 @@ struct ViewerMap {
 
 /// The drawn part of a light: for quick pictures as stored, for fine ones with sharp shadows.
 struct ViewerLight {
-  FacetLight stored;
+  StateLight stored;
   ColourBands bands;
   std::vector<std::vector<SurfaceKind>> surfaces;  ///< [material][organ type]
 };

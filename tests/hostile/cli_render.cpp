@@ -14,11 +14,12 @@ namespace {
 
 void write_result(const std::string& file, bool with_irradiance = true) {
   Scene scene = small_scene();
-  if (!with_irradiance) scene.output.fields = {"facets/absorbed", "geometry"};
+  OutputChoice output;
+  if (!with_irradiance) output.fields = {"facets/absorbed", "geometry"};
   const FacetScene facets = expand(scene);
   const PlacedScene placed = place(scene);
   const Values values(facets);
-  ResultWriter writer(file, scene, placed, OutputChoice{}, "0.1.0", "flat");
+  ResultWriter writer(file, scene, placed, output, "0.1.0", "flat");
   values.send(writer, 1000);
   writer.finish(small_report());
 }

@@ -52,7 +52,7 @@ TEST_CASE("a method that was asked for and is wrong here: inaccurate, exit 3, ev
   REQUIRE(run.exit_code == 3);
   CHECK(contains(run.err, "sunfleck: inaccurate: the certificate finds "));
   CHECK(contains(run.err, "where quality fine aims at "));
-  CHECK(contains(run.err, "The result is written with status 'inaccurate'. Method 'instantiation' was asked for and is kept"));
+  CHECK(contains(run.err, "The result has status 'inaccurate'. Method 'instantiation' was asked for and is kept"));
   CHECK_FALSE(contains(run.err, "solving again"));
   CHECK(Result(result).header().status == "inaccurate");
   CHECK(Result(result).header().method == "instantiation");

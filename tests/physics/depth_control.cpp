@@ -34,8 +34,8 @@ struct Opened {
   }
 };
 
-Opened opened(const Scene& scene) {
-  PlacedScene placed = place(scene);
+Opened opened(const Scene& scene, const Depth& depth = {}) {
+  PlacedScene placed = place(scene, depth);
   Kept kept(scene.states.size(), placed.facets, scene.band_count());
   auto report = solve_instantiation(scene, placed, InstantiationSettings{}, kept, silent());
   return {std::move(placed), std::move(kept), std::move(report)};
@@ -64,8 +64,7 @@ Scene orchard(std::uint32_t tiles) {
 TEST_CASE("only: a tile is lit in its surroundings as when all tiles are opened; groups farther away are never entered") {
   auto scene = orchard(5);
   const auto all = opened(scene);
-  scene.solve.only = {"stand/tile 2"};
-  const auto one = opened(scene);
+  const auto one = opened(scene, {{"stand/tile 2"}, {}});
   CHECK(all.placed.copies.size() == 75);
   CHECK(one.placed.copies.size() == 15);
   CHECK(one.placed.paths.front() == "stand[0]/tile[2]/row[0]/crown[0]");
@@ -89,8 +88,7 @@ TEST_CASE("only: a tile is lit in its surroundings as when all tiles are opened;
   for (int i = 0; i < 3000; ++i) large.groups[2].members.push_back({true, 1, {Affine::translate({0, 31 + 6.2 * i, 0})}});
   large.groups.push_back(world);
   large.ground.reset();
-  large.solve.only = {"world/stand 0/tile 2"};
-  const auto placed = place(large);
+  const auto placed = place(large, {{"world/stand 0/tile 2"}, {}});
   CHECK(placed.copies.size() == 15);
   CHECK(placed.near.size() < 200);
   CHECK(placed.far.size() < 20000);
@@ -108,8 +106,7 @@ TEST_CASE("only: of a plant that stands far away only, the first copy stands for
   hedge.placements = {{}, {Affine::translate({0, 40, 0})}};
   scene.groups.push_back(hedge);
   scene.ground = flat_ground({60, 160}, {10, 60}, {1, 1}, {0.12, 0.2});
-  scene.solve.only = {"stand"};
-  const auto run = opened(scene);
+  const auto run = opened(scene, {{"stand"}, {}});
   REQUIRE(run.placed.closed.size() == 2);
   CHECK(run.placed.near.empty());
   CHECK(run.placed.far.size() > 50);  // within 50 heights
@@ -122,8 +119,7 @@ TEST_CASE("only: of a plant that stands far away only, the first copy stands for
 
 TEST_CASE("only: what is opened agrees with path tracing through the whole scene") {
   auto scene = orchard(3);
-  scene.solve.only = {"stand 0/tile 1/row 1"};
-  const auto run = opened(scene);
+  const auto run = opened(scene, {{"stand 0/tile 1/row 1"}, {}});
   const PlacedScene wide = with_surroundings(run.placed);
   ReferenceSettings settings;
   settings.samples = 256;
@@ -157,8 +153,7 @@ TEST_CASE("only: the rim of a stand, beside open ground, agrees with path tracin
   trace_reference(scene, FacetRows(scene, whole), settings, kept, silent());
   const FacetRows whole_rows(scene, whole);
   const Opened traced{whole, std::move(kept), {}};
-  scene.solve.only = {"stand 0/tile 0/row 0"};
-  const auto run = opened(scene);
+  const auto run = opened(scene, {{"stand 0/tile 0/row 0"}, {}});
   const FacetRows rows(scene, run.placed);
   for (std::size_t band = 0; band < 2; ++band) {
     double a = 0, b = 0;
@@ -176,8 +171,9 @@ TEST_CASE("stop_at: closed plants, groups and structures absorb what their leave
   for (std::uint64_t organ = 0; organ < 1500; ++organ)
     for (std::size_t band = 0; band < 2; ++band) tree[organ / 100 * 2 + band] += all.power(all_rows, organ, band);
   for (const char* type : {"plant", "crown", "row", "tile"}) {
-    scene.solve.stop_at.type = type;
-    const auto closed = opened(scene);
+    Depth depth;
+    depth.stop_at.type = type;
+    const auto closed = opened(scene, depth);
     const std::size_t n = type == std::string("tile") ? 1 : type == std::string("row") ? 3 : 15;
     CAPTURE(type);
     REQUIRE(closed.placed.closed.size() == n);
@@ -196,14 +192,15 @@ TEST_CASE("stop_at: closed plants, groups and structures absorb what their leave
 
 TEST_CASE("stop_at: inside plants the sums of facets are kept, and nothing is lost") {
   auto scene = orchard(1);
-  scene.solve.stop_at.size = 1e-3;
+  Depth depth;
+  depth.stop_at.size = 1e-3;
   {
-    const auto placed = place(scene);
+    const auto placed = place(scene, depth);
     CHECK_THROWS_AS(structures_layout(scene, placed), InputError);  // no leaf is that small
   }
-  scene.solve.stop_at.size = 0.5;  // every leaf
-  const auto placed = place(scene);
-  REQUIRE(stops_inside(scene, placed));
+  depth.stop_at.size = 0.5;  // every leaf
+  const auto placed = place(scene, depth);
+  REQUIRE(stops_inside(placed));
   const auto layout = structures_layout(scene, placed);
   CHECK(layout.copies.empty());
   REQUIRE(layout.closed.size() == 1500);
@@ -223,13 +220,11 @@ TEST_CASE("only: patterns that meet nothing, or say nothing, are refused with wh
   auto scene = orchard(1);
   scene.file = "orchard.toml";
   for (const char* pattern : {"stand 3", "tile 0", "stand/tile 0/row 9", "stand/*/row[1]/crown 5"}) {
-    scene.solve.only = {pattern};
     CAPTURE(pattern);
-    CHECK_THROWS_WITH(place(scene),
+    CHECK_THROWS_WITH(place(scene, {{pattern}, {}}),
                       Catch::Contains("orchard.toml: solve.only: found \"" + std::string(pattern)) && Catch::Contains("stand[0]"));
   }
-  scene.solve.only = {"stand//row"};
-  CHECK_THROWS_WITH(place(scene), Catch::Contains("expected a path of placements"));
-  scene.solve.only = {"stand/*/row[1]/crown 4", "stand/tile/row 0/crown[0]"};
-  CHECK(place(scene).paths == std::vector<std::string>{"stand[0]/tile[0]/row[0]/crown[0]", "stand[0]/tile[0]/row[1]/crown[4]"});
+  CHECK_THROWS_WITH(place(scene, {{"stand//row"}, {}}), Catch::Contains("expected a path of placements"));
+  const Depth two{{"stand/*/row[1]/crown 4", "stand/tile/row 0/crown[0]"}, {}};
+  CHECK(place(scene, two).paths == std::vector<std::string>{"stand[0]/tile[0]/row[0]/crown[0]", "stand[0]/tile[0]/row[1]/crown[4]"});
 }

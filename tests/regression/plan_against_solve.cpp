@@ -40,9 +40,9 @@ void check_figures(const Figures& planned, const Figures& seen, const std::strin
   }
 }
 
-InstantiationPlan check_plan(const Scene& scene, InstantiationSettings settings = {}) {
+InstantiationPlan check_plan(const Scene& scene, InstantiationSettings settings = {}, const Depth& depth = {}) {
   settings.threads = 2;  // batches are worked on side by side
-  const auto placed = place(scene);
+  const auto placed = place(scene, depth);
   const auto plan = plan_instantiation(scene, placed, settings, silent());
   NoSink sink;
   const auto report = solve_instantiation(scene, placed, settings, sink, silent());
@@ -146,9 +146,7 @@ TEST_CASE("plan against solve: a sky alone", "[plan]") {
 }
 
 TEST_CASE("plan against solve: one crown opened, the others closed", "[plan]") {
-  auto scene = grove(3, 1.6);
-  scene.solve.only = {"crown 4"};
-  check_plan(scene);
+  check_plan(grove(3, 1.6), {}, {{"crown 4"}, {}});
 }
 
 TEST_CASE("plan against solve: plants of which nothing is alike", "[plan]") {
@@ -181,7 +179,7 @@ TEST_CASE("a plan made of a part of the copies predicts what one of all of them 
   scene.ground->cells = {2, 2};
   InstantiationSettings settings;
   settings.threads = 2;
-  const auto part_placed = place(scene, 16);
+  const auto part_placed = place(scene, {}, 16);
   REQUIRE(part_placed.share == 0.25);
   const auto all = plan_instantiation(scene, place(scene), settings, silent()),
              part = plan_instantiation(scene, part_placed, settings, silent());

@@ -4,7 +4,9 @@
 #include <sunfleck/instantiation/fineness.hpp>
 #include <sunfleck/radiosity/fineness.hpp>
 
-#include "cli/error_goal.hpp"
+#include <sunfleck/solver/error_goal.hpp>
+
+#include "cli/error_option.hpp"
 #include "solver/refinement.hpp"
 
 using namespace sunfleck;
@@ -14,7 +16,7 @@ namespace {
 const std::vector<std::string> bands{"PAR", "NIR"};
 
 std::vector<double> goal(const std::string& text) {
-  return error_goal(named_errors(text), bands);
+  return error_goal(wanted_errors(text), bands);
 }
 
 /// What a certificate says of errors, each known to a relative standard error of its square.
@@ -54,8 +56,8 @@ TEST_CASE("a wanted error that cannot be read says what was found and expected",
   CHECK_THROWS_WITH(goal("2%%"), "--error: found '2%%'; " + range);
   CHECK_THROWS_WITH(goal("PAR=1%,2%"), "--error: found '2%'; expected BAND=ERROR, such as PAR=2%");
   CHECK_THROWS_WITH(goal("PAR=1%,"), "--error: found ''; expected BAND=ERROR, such as PAR=2%");
-  CHECK_THROWS_WITH(goal("NER=1%"), "--error: found band 'NER'; expected one of PAR, NIR (did you mean 'NIR'?)");
-  CHECK_THROWS_WITH(goal("PAR=1%,PAR=2%"), "--error: found band 'PAR' twice; expected each band once");
+  CHECK_THROWS_WITH(goal("NER=1%"), "error: found band 'NER'; expected one of PAR, NIR (did you mean 'NIR'?)");
+  CHECK_THROWS_WITH(goal("PAR=1%,PAR=2%"), "error: found band 'PAR' twice; expected each band once");
   CHECK_THROWS_AS(goal("2"), UsageError);
 }
 

@@ -17,6 +17,10 @@ Scene read(const std::string& text) {
   return SceneFiles(text).read();
 }
 
+SceneFile read_file(const std::string& text) {
+  return SceneFiles(text).read_file();
+}
+
 const std::string band = "bands = [\"PAR\"]\n";
 const std::string sky = "[sky]\nmodel = \"uniform\"\nirradiance = { PAR = 50 }\n";
 
@@ -133,18 +137,18 @@ TEST_CASE("Global radiation is split between sun and sky", "[format][scene]") {
 }
 
 TEST_CASE("[output] and [solve] are kept as chosen", "[format][scene]") {
-  const Scene plain = read(band + sky);
+  const SceneFile plain = read_file(band + sky);
   CHECK(plain.output.facets);
   CHECK(plain.output.fields.empty());
-  CHECK_FALSE(plain.solve.quality);
-  const Scene chosen = read(band + sky +
+  CHECK_FALSE(plain.run.quality);
+  const SceneFile chosen = read_file(band + sky +
                             "[output]\nfacets = false\nfields = [\"organs/absorbed\", \"organs/sunlit\"]\n"
                             "[solve]\nquality = \"fine\"\nmethod = \"reference\"\nseed = 7\ncertificate = false\nsamples = 256\n");
   CHECK_FALSE(chosen.output.facets);
   CHECK(chosen.output.fields == std::vector<std::string>{"organs/absorbed", "organs/sunlit"});
-  CHECK(chosen.solve.quality == Quality::fine);
-  CHECK(chosen.solve.method == "reference");
-  CHECK(chosen.solve.seed == 7u);
-  CHECK(chosen.solve.certificate == false);
-  CHECK(chosen.solve.samples == 256u);
+  CHECK(chosen.run.quality == Quality::fine);
+  CHECK(chosen.run.method == "reference");
+  CHECK(chosen.run.seed == 7u);
+  CHECK(chosen.run.certificate == false);
+  CHECK(chosen.run.samples == 256u);
 }

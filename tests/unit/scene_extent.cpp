@@ -124,7 +124,7 @@ TEST_CASE("a part of very many copies is listed for estimates: of every plant an
   scene.plants.push_back(scene.plants[0]);
   scene.plants.back().name = "other";
   scene.groups.push_back({"pair", {{false, 0, placed({})}, {false, 1, placed({{0, 5, 0}})}}, places});
-  const PlacedScene all = place(scene), part = place(scene, 400);
+  const PlacedScene all = place(scene), part = place(scene, {}, 400);
   CHECK(all.copies.size() == 4000);
   CHECK(all.share == 1.0);
   REQUIRE(part.copies.size() == 400);
@@ -134,5 +134,5 @@ TEST_CASE("a part of very many copies is listed for estimates: of every plant an
   // one group that holds all of them is listed in part too
   scene.groups.back().placements = {placed({})};
   for (const auto& p : places) scene.groups.back().members.push_back({false, 0, p});
-  CHECK(place(scene, 400).copies.size() <= 801);
+  CHECK(place(scene, {}, 400).copies.size() <= 801);
 }

@@ -36,8 +36,8 @@ const PlanItem& item(const Plan& plan, const std::string& name) {
 
 }  // namespace
 
-TEST_CASE("what a scene does not have is left out, with the reason", "[cli][plan]") {
-  const Plan plan = make_plan(one_triangle(), {"clustering", Quality::standard}, silent());
+TEST_CASE("what a scene does not have is left out, with the reason", "[solver][plan]") {
+  const Plan plan = make_plan(one_triangle(), {"clustering", Quality::standard}, {}, silent());
   for (const char* name :
        {"states", "sun disc", "sky", "lamps", "sensors", "periodicity", "ground", "copies", "scattering", "transmission"}) {
     INFO(name);
@@ -48,7 +48,7 @@ TEST_CASE("what a scene does not have is left out, with the reason", "[cli][plan
   CHECK(item(plan, "scattering").why == "every surface is black in every band");
 }
 
-TEST_CASE("what a scene has is planned", "[cli][plan]") {
+TEST_CASE("what a scene has is planned", "[solver][plan]") {
   Scene scene = one_triangle();
   scene.optics[0].transmittance[1] = 0.4f;
   scene.states[0].sun->angular_diameter_deg = 0.53;
@@ -57,7 +57,7 @@ TEST_CASE("what a scene has is planned", "[cli][plan]") {
   scene.states[1].sky = Sky{};
   scene.periodic = PeriodicCell{0, 0, 2, 1};
   scene.plants[0].placements.push_back({Affine::translate({1, 0, 0})});
-  const Plan plan = make_plan(scene, {"clustering", Quality::standard}, silent());
+  const Plan plan = make_plan(scene, {"clustering", Quality::standard}, {}, silent());
   for (const char* name : {"states", "sun disc", "sky", "periodicity", "copies", "scattering", "transmission"}) {
     INFO(name);
     CHECK(item(plan, name).done);
@@ -67,16 +67,16 @@ TEST_CASE("what a scene has is planned", "[cli][plan]") {
   CHECK(plan.memory_total() > 0);
 }
 
-TEST_CASE("a method leaves out what it does not do", "[cli][plan]") {
+TEST_CASE("a method leaves out what it does not do", "[solver][plan]") {
   Scene scene = one_triangle();
   scene.optics[0].transmittance[0] = 0.1f;
-  CHECK(item(make_plan(scene, {"direct", Quality::standard}, silent()), "scattering").why ==
+  CHECK(item(make_plan(scene, {"direct", Quality::standard}, {}, silent()), "scattering").why ==
         "method 'direct' stops at the light that arrives first");
-  CHECK_FALSE(item(make_plan(scene, {"direct", Quality::standard}, silent()), "transmission").done);
-  CHECK_FALSE(item(make_plan(scene, {"reference", Quality::standard}, silent()), "certificate").done);
+  CHECK_FALSE(item(make_plan(scene, {"direct", Quality::standard}, {}, silent()), "transmission").done);
+  CHECK_FALSE(item(make_plan(scene, {"reference", Quality::standard}, {}, silent()), "certificate").done);
 }
 
-TEST_CASE("a scene with lamps or sensors is not left to instantiation, which knows neither", "[cli][plan][lamps][sensors]") {
+TEST_CASE("a scene with lamps or sensors is not left to instantiation, which knows neither", "[solver][plan][lamps][sensors]") {
   Scene scene = one_triangle();
   scene.sensors.push_back({"grid", SensorGrid{1.0, {1, 1}, {}, {}}, false, 0});
   const auto with_sensor = default_method(scene, Quality::draft, silent());
@@ -88,7 +88,7 @@ TEST_CASE("a scene with lamps or sensors is not left to instantiation, which kno
   CHECK(with_lamp.why == "instantiation knows no lamps");
   // nor planned with it
   CHECK_THROWS_WITH(
-      make_plan(scene, {"instantiation", Quality::draft}, silent()),
+      make_plan(scene, {"instantiation", Quality::draft}, {}, silent()),
       "scene in memory: lamp: found a lamp with method 'instantiation'; expected clustering, flat, direct or reference, which know "
       "lamps and sensors");
 }

@@ -11,9 +11,9 @@ const auto everything_fits = [](const MethodChoice&, std::string&) { return true
 
 }  // namespace
 
-TEST_CASE("after instantiation clustering, after that finer, then none", "[cli][second_try]") {
-  const Scene scene;
-  SecondTry tries(scene, false, everything_fits);
+TEST_CASE("after instantiation clustering, after that finer, then none", "[solver][second_try]") {
+  const RunSettings run;
+  SecondTry tries(run, everything_fits);
   const auto second = tries.next({"instantiation", Quality::standard, ""});
   REQUIRE(second);
   CHECK(second->method == "clustering");
@@ -24,23 +24,24 @@ TEST_CASE("after instantiation clustering, after that finer, then none", "[cli][
   CHECK(fineness_of(*third) == 2.0);
   CHECK_FALSE(tries.next(*third));
   CHECK(tries.advice().find("reference") != std::string::npos);
-  SecondTry finest(scene, false, everything_fits);
+  SecondTry finest(run, everything_fits);
   MethodChoice choice{"clustering", Quality::standard, ""};
   choice.fineness = 3.0;
   CHECK_FALSE(finest.next(choice));
 }
 
-TEST_CASE("a method that was asked for is kept, and what to ask for is said", "[cli][second_try]") {
-  const Scene scene;
-  SecondTry tries(scene, true, everything_fits);
+TEST_CASE("a method that was asked for is kept, and what to ask for is said", "[solver][second_try]") {
+  RunSettings run;
+  run.method = "instantiation";
+  SecondTry tries(run, everything_fits);
   CHECK_FALSE(tries.next({"instantiation", Quality::standard, ""}));
   CHECK(tries.advice() ==
         "Method 'instantiation' was asked for and is kept: leave the choice to the program, or ask for clustering or reference");
 }
 
-TEST_CASE("what does not fit into memory is not tried", "[cli][second_try]") {
-  const Scene scene;
-  SecondTry nothing(scene, false, [](const MethodChoice&, std::string& why) {
+TEST_CASE("what does not fit into memory is not tried", "[solver][second_try]") {
+  const RunSettings run;
+  SecondTry nothing(run, [](const MethodChoice&, std::string& why) {
     why = "needs about 9 GiB, 2 GiB of the machine are free";
     return false;
   });
@@ -48,9 +49,9 @@ TEST_CASE("what does not fit into memory is not tried", "[cli][second_try]") {
   CHECK(nothing.advice() == "Method clustering would be nearer to the truth, but needs about 9 GiB, 2 GiB of the machine are free");
 }
 
-TEST_CASE("what stays closed is known to instantiation alone", "[cli][second_try]") {
-  Scene scene;
-  scene.solve.only = {"tile[3]/*"};
-  SecondTry tries(scene, false, everything_fits);
+TEST_CASE("what stays closed is known to instantiation alone", "[solver][second_try]") {
+  RunSettings run;
+  run.depth.only = {"tile[3]/*"};
+  SecondTry tries(run, everything_fits);
   CHECK_FALSE(tries.next({"instantiation", Quality::standard, ""}));
 }

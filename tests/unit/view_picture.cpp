@@ -33,8 +33,8 @@ FacetScene leaf_over_ground(std::optional<PeriodicCell> periodic = std::nullopt)
 }
 
 /// Sun straight above, 400 W m^-2, and an even 50 W m^-2 on both sides of everything; the leaf's shadow is in the stored fractions.
-FacetLight noon(const FacetScene& scene) {
-  FacetLight light;
+StateLight noon(const FacetScene& scene) {
+  StateLight light;
   light.bands = {"PAR"};
   light.sun = Sun{{0, 0, 1}, {400}, 0.0};
   for (std::size_t f = 0; f < scene.size(); ++f) {
@@ -67,7 +67,7 @@ struct Impatient : Progress {
 
 TEST_CASE("a natural picture shows leaf, lit ground and shadow, the same with one thread and many", "[view]") {
   const FacetScene scene = leaf_over_ground();
-  const FacetLight light = noon(scene);
+  const StateLight light = noon(scene);
   PictureSettings settings = small(20);
   settings.camera.eye = Vec3{0, -6, 2};
   const Image picture = draw_natural(scene, light, settings, silent());
@@ -91,7 +91,7 @@ TEST_CASE("a natural picture shows leaf, lit ground and shadow, the same with on
 
 TEST_CASE("the beam drawn at a point has the stored mean: an evenly lit leaf looks the same with and without it", "[view]") {
   const FacetScene scene = leaf_over_ground();
-  FacetLight light = noon(scene);
+  StateLight light = noon(scene);
   PictureSettings settings = small(90);
   settings.camera.azimuth_deg = 180;
   settings.camera.target.reset();

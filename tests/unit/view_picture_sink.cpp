@@ -45,7 +45,7 @@ TEST_CASE("picture sink: draws what draw_natural draws of all the light, and kee
   CHECK(kept.complete());
   const Image drawn = sink.draw(silent()).image;
 
-  const FacetLight light{scene.bands, std::nullopt, kept.irradiance, kept.sunlit, scene.states[0].sun};
+  const StateLight light{scene.bands, std::nullopt, kept.irradiance, kept.sunlit, scene.states[0].sun};
   const DrawnScene whole(scene, placed);
   const Image expected = draw_natural(whole, light_source(light, placed.facets), settings, silent()).image;
   double worst = 0;

@@ -11,10 +11,11 @@ using namespace sunfleck::test;
 namespace {
 
 /// A result of small_scene() as a solver would leave it.
-std::string stored(const Folder& folder, const Scene& scene, const FacetScene& facets, const char* name = "r.h5") {
+std::string stored(const Folder& folder, const Scene& scene, const FacetScene& facets, const char* name = "r.h5",
+                   const OutputChoice& output = {}) {
   const Values values(facets);
   const PlacedScene placed = place(scene);
-  ResultWriter writer(folder / name, scene, placed, OutputChoice{}, "0.1.0", "flat");
+  ResultWriter writer(folder / name, scene, placed, output, "0.1.0", "flat");
   values.send(writer, 1000);
   writer.finish(small_report());
   return folder / name;
@@ -41,10 +42,9 @@ TEST_CASE("a stored scene is the scene that was solved", "[view][result]") {
 
 TEST_CASE("a file that keeps organs only still tells which facet belongs to which organ", "[view][result]") {
   const Folder folder;
-  Scene scene = small_scene();
-  scene.output.facets = false;
+  const Scene scene = small_scene();
   const FacetScene solved = expand(scene);
-  const Result result(stored(folder, scene, solved));
+  const Result result(stored(folder, scene, solved, "r.h5", {false, {}}));
   const FacetScene read = stored_scene(result);
   REQUIRE(read.organ == solved.organ);
   const FacetMap map = stored_map(result, read, {});
@@ -53,7 +53,7 @@ TEST_CASE("a file that keeps organs only still tells which facet belongs to whic
   const std::size_t b = result.bands().size(), organ = read.organ[2];
   REQUIRE(map.title.at(1) == "organ means");
   REQUIRE(map.values[2] == Approx(power[organ * b] / area[organ]).epsilon(1e-6));  // one division in float
-  const FacetLight light = stored_light(result, read, 0);
+  const StateLight light = stored_light(result, read, 0);
   REQUIRE(light.irradiance.size() == 2 * b * read.size());
   const DrawnScene drawn(result);
   const LightSource source = stored_light(result, drawn, 0);
@@ -215,16 +215,14 @@ TEST_CASE("names that the file does not hold are refused with the nearest one", 
 
 TEST_CASE("a file without the quantity asked for says so", "[view][result]") {
   const Folder folder;
-  Scene scene = small_scene();
-  scene.output.fields = {"organs/absorbed", "geometry"};
-  const Result result(stored(folder, scene, expand(scene)));
+  const Scene scene = small_scene();
+  const Result result(stored(folder, scene, expand(scene), "r.h5", {true, {"organs/absorbed", "geometry"}}));
   const FacetScene read = stored_scene(result);
   REQUIRE_THROWS_WITH(stored_light(result, read, 0),
                       Catch::Matchers::EndsWith("expected irradiance of facets or organs; [output] of the scene left both out"));
   MapChoice choice;
   choice.quantity = "sunlit";
   REQUIRE_THROWS_AS(stored_map(result, read, choice), InputError);
-  Scene bare = small_scene();
-  bare.output.fields = {"organs/absorbed"};
-  REQUIRE_THROWS_WITH(stored_scene(Result(stored(folder, bare, expand(bare), "bare.h5"))), Catch::Matchers::Contains("left them out"));
+  REQUIRE_THROWS_WITH(stored_scene(Result(stored(folder, scene, expand(scene), "bare.h5", {true, {"organs/absorbed"}}))),
+                      Catch::Matchers::Contains("left them out"));
 }

@@ -19,7 +19,7 @@
 namespace sunfleck {
 
 /// Light on the facets of a scene in one lighting state; n facets, b bands.
-struct FacetLight {
+struct StateLight {
   std::vector<std::string> bands;                  ///< [b]
   std::optional<std::size_t> band = std::nullopt;  ///< the one band to draw with a guessed hue; none: colour_bands()
   std::vector<float> irradiance;                   ///< [n][2][b] front, back [W m^-2]
@@ -79,7 +79,7 @@ struct LightSource {
 };
 
 /// Reads from a light in memory, which must outlive it, over `facets` facets.
-LightSource light_source(const FacetLight& light, std::size_t facets);
+LightSource light_source(const StateLight& light, std::size_t facets);
 
 /// What draw_map() needs of a map, read in the same way.
 struct MapSource {
@@ -112,7 +112,7 @@ Picture draw_map(const DrawnScene& scene, const MapSource& map, const PictureSet
 ///  lowest
 ///    height in the mean colour of its least shaded fifth.
 /// The same bits for any number of threads. Throws UsageError for impossible settings, Stopped when cancelled.
-Image draw_natural(const FacetScene& scene, const FacetLight& light, const PictureSettings& settings, Progress& progress);
+Image draw_natural(const FacetScene& scene, const StateLight& light, const PictureSettings& settings, Progress& progress);
 
 /// A map with its legend on the right. Numbers keep the legend's exact colours (no shading); names are shaded by the angle
 /// of view to show shape.

@@ -24,7 +24,7 @@ LightSource stored_light(const Result& result, const DrawnScene& scene, std::siz
 
 /// Light on the facets of stored_scene(); where the file keeps organs only, every facet has its organ's mean. Throws InputError
 /// where it keeps neither.
-FacetLight stored_light(const Result& result, const FacetScene& scene, std::size_t state);
+StateLight stored_light(const Result& result, const FacetScene& scene, std::size_t state);
 
 /// What draw_map() can show: see docs/render.md.
 const std::vector<std::string>& quantity_names();
