@@ -10,6 +10,7 @@
 namespace sunfleck {
 
 /// `certificate` and `shares` may be null.
-void print_solve_table(const Scene& scene, const Depth& depth, const SolveReport& report, const Certificate* certificate, const PlantShares* shares);
+void print_solve_table(const Scene& scene, const Depth& depth, const SolveReport& report, const Certificate* certificate,
+                       const PlantShares* shares);
 
 }  // namespace sunfleck

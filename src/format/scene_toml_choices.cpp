@@ -49,8 +49,7 @@ void read_solve(const TomlValue& root, RunSettings& run) {
   if (const auto quality = solve->get("quality")) {
     run.quality = quality_from_name(quality->one_of({"draft", "standard", "fine"}));
   }
-  if (const auto method = solve->get("method"))
-    run.method = method->one_of(method_names());
+  if (const auto method = solve->get("method")) run.method = method->one_of(method_names());
   if (const auto seed = solve->get("seed"))
     run.seed = static_cast<std::uint64_t>(seed->integer(0, std::numeric_limits<std::int64_t>::max()));
   if (const auto certificate = solve->get("certificate")) run.certificate = certificate->flag();

@@ -142,8 +142,8 @@ TEST_CASE("[output] and [solve] are kept as chosen", "[format][scene]") {
   CHECK(plain.output.fields.empty());
   CHECK_FALSE(plain.run.quality);
   const SceneFile chosen = read_file(band + sky +
-                            "[output]\nfacets = false\nfields = [\"organs/absorbed\", \"organs/sunlit\"]\n"
-                            "[solve]\nquality = \"fine\"\nmethod = \"reference\"\nseed = 7\ncertificate = false\nsamples = 256\n");
+                                     "[output]\nfacets = false\nfields = [\"organs/absorbed\", \"organs/sunlit\"]\n"
+                                     "[solve]\nquality = \"fine\"\nmethod = \"reference\"\nseed = 7\ncertificate = false\nsamples = 256\n");
   CHECK_FALSE(chosen.output.facets);
   CHECK(chosen.output.fields == std::vector<std::string>{"organs/absorbed", "organs/sunlit"});
   CHECK(chosen.run.quality == Quality::fine);
