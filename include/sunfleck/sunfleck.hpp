@@ -13,5 +13,6 @@
 #include <sunfleck/solver/organ_views.hpp>
 #include <sunfleck/solver/plan.hpp>
 #include <sunfleck/solver/result_file.hpp>
+#include <sunfleck/solver/session.hpp>
 #include <sunfleck/solver/solution.hpp>
 #include <sunfleck/solver/solve.hpp>

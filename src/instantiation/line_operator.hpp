@@ -92,6 +92,8 @@ class LineOperator {
   std::uint64_t fragments = 0;
 
  private:
+  friend struct OperatorArchive;
+  LineOperator() = default;
   static constexpr std::uint32_t line_begins = 1u << 31, dark = 1u << 30;  // marks of a hit on a line; the latter: it is enclosed
 
   void trace(const Elements& elements, const std::vector<std::uint8_t>& interior, const OperatorDensity& density, std::uint64_t seed,

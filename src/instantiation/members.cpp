@@ -17,6 +17,7 @@
 #include "instantiation/coincident.hpp"
 #include "instantiation/member_surroundings.hpp"
 #include "instantiation/organ_count.hpp"
+#include "instantiation/stored_operators.hpp"
 #include "instantiation/tangles.hpp"
 
 namespace sunfleck {
@@ -173,8 +174,20 @@ void lower_ground(Members& out) {
   for (auto& t : out.copies.ground) t = gap.lowered(t);
 }
 
+/// All of an original that its elements and operators follow from.
+void put_original(ContentKey& key, const Scene& scene, const Approximation& approximation, const Original& original) {
+  key.put(static_cast<std::uint64_t>(scene.optics.size()));
+  for (const auto& o : scene.optics) put_optics(key, o);
+  for (const auto& part : original.parts) {
+    const auto& entry =
+        part.plant < scene.plants.size() ? scene.plants[part.plant] : approximation.pieces[part.plant - scene.plants.size()];
+    put_plant(key, *entry.plant);
+    key.put(entry.shape_optics), key.put(part.map);
+  }
+}
+
 Members with_light(const Scene& scene, const PlacedScene& placed, Approximation approximation, Originals found,
-                   const OperatorDensity& coarse, double elements_per_organ, std::uint64_t seed, Progress& progress) {
+                   const OperatorDensity& coarse, double elements_per_organ, std::uint64_t seed, Progress& progress, OperatorStore* store) {
   Members out;
   out.approximation = std::move(approximation);
   out.found = std::move(found);
@@ -184,11 +197,23 @@ Members with_light(const Scene& scene, const PlacedScene& placed, Approximation 
   for (std::size_t o = 0; o < out.found.originals.size(); ++o) {
     progress.check();
     progress.fraction("originals", static_cast<double>(o) / static_cast<double>(out.found.originals.size()));
-    out.originals.push_back(
-        original_light(scene, out.approximation, out.found.originals[o], elements_per_organ, coarse, fewest[o], seed, progress));
+    const auto& original = out.found.originals[o];
+    const auto density = coarse_density(scene, original, coarse);
+    const auto make = [&] {
+      auto light = original_light(scene, out.approximation, original, elements_per_organ, coarse, fewest[o], seed, progress);
+      light.coarse = std::make_unique<LineOperator>(light.elements, light.interior, density, mix(seed, coarse_stream, o), progress);
+      return light;
+    };
+    if (store) {
+      ContentKey key("original");
+      put_original(key, scene, out.approximation, original);
+      key.put(elements_per_organ), put_density(key, coarse), put_density(key, density);
+      key.put(fewest[o]), key.put(seed), key.put(static_cast<std::uint64_t>(o));
+      out.originals.push_back(store->entries().original(key.hex(), make));
+    } else {
+      out.originals.push_back(make());
+    }
     auto& light = out.originals.back();
-    light.coarse = std::make_unique<LineOperator>(light.elements, light.interior, coarse_density(scene, out.found.originals[o], coarse),
-                                                  mix(seed, coarse_stream, o), progress);
     out.made_with = std::max(out.made_with, out.bytes() - light.coarse->bytes() + light.coarse->built_with());
   }
   for (const auto& o : out.originals) out.copies.surfaces.push_back(&o.elements.surface);
@@ -243,7 +268,7 @@ std::vector<std::vector<std::uint32_t>> groups_of(const Members& members, std::v
 }  // namespace
 
 Members make_members(const Scene& scene, const PlacedScene& placed, const Classification* classes, const OperatorDensity& coarse,
-                     double elements_per_organ, std::uint64_t seed, Progress& progress) {
+                     double elements_per_organ, std::uint64_t seed, Progress& progress, OperatorStore* store) {
   Approximation approximation;
   approximation.of_plant.resize(scene.plants.size());
   if (classes) approximation = approximate(scene, placed, *classes);
@@ -251,7 +276,8 @@ Members make_members(const Scene& scene, const PlacedScene& placed, const Classi
     progress.line(fmt::format("approximate instancing: {} pieces of plants stand for {} structures until these are opened",
                               approximation.pieces.size(), approximation.closed));
   auto originals = find_originals(scene, placed, approximation);
-  Members members = with_light(scene, placed, std::move(approximation), std::move(originals), coarse, elements_per_organ, seed, progress);
+  Members members =
+      with_light(scene, placed, std::move(approximation), std::move(originals), coarse, elements_per_organ, seed, progress, store);
   for (int round = 0;; ++round) {
     const auto list = tangles(members, MemberSurroundings(members), progress);
     members.tangled = mean_share(members, list);
@@ -262,7 +288,7 @@ Members make_members(const Scene& scene, const PlacedScene& placed, const Classi
     approximation = std::move(members.approximation);
     const auto made_apart = members.made_with;
     members = {};
-    members = with_light(scene, placed, std::move(approximation), std::move(found), coarse, elements_per_organ, seed, progress);
+    members = with_light(scene, placed, std::move(approximation), std::move(found), coarse, elements_per_organ, seed, progress, store);
     members.made_with = std::max(members.made_with, made_apart);
   }
   std::uint64_t groups = 0;

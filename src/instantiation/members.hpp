@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include <sunfleck/core/progress.hpp>
+#include <sunfleck/instantiation/operator_store.hpp>
 #include <sunfleck/visibility/copies.hpp>
 
 #include "instantiation/line_operator.hpp"
@@ -21,6 +23,7 @@ struct OriginalLight {
   std::vector<std::uint32_t> facet_material;  ///< [n] row of Scene::optics, by facet of the original
   std::vector<std::uint32_t> facet_of_part;   ///< [parts + 1] first facet of each part
   std::unique_ptr<LineOperator> coarse;
+  std::string key;  ///< of its content, in a solve with a store
 
   std::size_t bytes() const;
   /// Drops all but what rays that end in its copies ask for.
@@ -60,7 +63,7 @@ struct Members {
 /// and 300,000 besides, the least tangled are left as they are.
 /// Members that stand in for structures stay apart: what they hide of each other is part of the approximation until they are opened.
 Members make_members(const Scene& scene, const PlacedScene& placed, const Classification* classes, const OperatorDensity& coarse,
-                     double elements_per_organ, std::uint64_t seed, Progress& progress);
+                     double elements_per_organ, std::uint64_t seed, Progress& progress, OperatorStore* store = nullptr);
 
 /// Of an original's coarse operator. Pieces of plants are small and many: coarser fields do.
 OperatorDensity coarse_density(const Scene& scene, const Original& original, OperatorDensity coarse);

@@ -17,6 +17,7 @@
 #include "instantiation/ground_rows.hpp"
 #include "instantiation/inside_gather.hpp"
 #include "instantiation/opening_steps.hpp"
+#include "instantiation/stored_operators.hpp"
 
 namespace sunfleck {
 
@@ -52,7 +53,7 @@ class Opening {
       fine_of_ = no_parent;
       s_.memory.hold("fine", 0);
     }
-    if (step.once)
+    if (step.once && !keeps_fine(o))
       open_once(group.front(), rows, partial.front());
     else
       open_shared(step, rows, partial);
@@ -64,15 +65,32 @@ class Opening {
     s_.memory.hold("originals", s_.members.bytes());
   }
 
+  std::shared_ptr<const LineOperator> fine_operator(std::uint32_t o, const OperatorDensity& density) const {
+    const auto& original = s_.members.originals[o];
+    const auto seed = mix(s_.seed, fine_stream, o);
+    const auto make = [&] {
+      return std::make_unique<LineOperator>(original.elements, original.interior, density, seed, s_.progress, seen());
+    };
+    if (!keeps_fine(o)) return make();
+    ContentKey key("fine operator");
+    key.put(original.key), put_density(key, density), key.put(seed), key.put(seen());
+    return s_.store->entries().fine(key.hex(), make);
+  }
+
+  /// Is the fine operator kept from solve to solve? One that would take more than a fourth of the store is followed as it is traced.
+  bool keeps_fine(std::uint32_t o) const {
+    if (!s_.store) return false;
+    const auto lines = [](const OperatorDensity& d) { return d.directions * d.lines_per_organ; };
+    const double more = lines(gather_density(s_.density, order_.opened_of_original[o])) / lines(s_.density.coarse);
+    return 4.0 * more * static_cast<double>(s_.members.originals[o].coarse->bytes()) < static_cast<double>(s_.store->most_bytes());
+  }
+
   /// Opens batches along one fine operator, which is kept for those of the next window.
   void open_shared(const OpeningStep& step, std::vector<CopyRows>& rows, std::vector<std::vector<Balance>>& partial) {
     const auto& group = step.batches;
     if (!fine_) {
       fine_of_ = step.original;
-      const auto& original = s_.members.originals[fine_of_];
-      fine_ = std::make_unique<LineOperator>(original.elements, original.interior,
-                                             gather_density(s_.density, order_.opened_of_original[fine_of_]),
-                                             mix(s_.seed, fine_stream, fine_of_), s_.progress, seen());
+      fine_ = fine_operator(fine_of_, gather_density(s_.density, order_.opened_of_original[fine_of_]));
       s_.gather_fragments += fine_->fragments;
       s_.memory.pass("fine", fine_->built_with());
       s_.memory.hold("fine", fine_->bytes());
@@ -357,7 +375,7 @@ class Opening {
   std::vector<OpenedPieces> pieces_;
   const OpeningSteps order_;
   std::uint32_t fine_of_ = no_parent;  ///< the original that `fine_` is of
-  std::unique_ptr<LineOperator> fine_;
+  std::shared_ptr<const LineOperator> fine_;
 };
 
 }  // namespace

@@ -35,7 +35,9 @@ SceneLight::SceneLight(const Scene& a_scene, const PlacedScene& a_placed, const 
       bands(a_scene.band_count()),
       columns(states * bands),
       lights(light_sources(a_scene.states)),
-      members(make_members(a_scene, a_placed, settings.classes, density.coarse, density.elements_per_organ, seed, a_progress)) {
+      members(
+          make_members(a_scene, a_placed, settings.classes, density.coarse, density.elements_per_organ, seed, a_progress, settings.store)),
+      store(settings.store) {
   release_freed_memory();
   memory.hold("plants", held_bytes(scene));
   memory.hold("originals", members.bytes());

@@ -66,7 +66,8 @@ struct SceneLight {
   const std::size_t states, bands, columns;
   const LightSources lights;
   Members members;
-  std::vector<LitCells> lit;  ///< per distinct sun
+  OperatorStore* const store;  ///< or null
+  std::vector<LitCells> lit;   ///< per distinct sun
   std::unique_ptr<MemberSurroundings> around;
   std::vector<std::uint64_t> field_start, end_start;  ///< [members + 1]
   std::vector<RayEnd> ends;                           ///< of the coarse operators' points

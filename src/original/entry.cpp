@@ -5,7 +5,7 @@
 #include <cstring>
 #include <type_traits>
 
-#include <sunfleck/core/sha256.hpp>
+#include <sunfleck/core/cache_folder.hpp>
 
 #include "original/harmonics.hpp"
 
@@ -100,18 +100,13 @@ std::string to_entry(const OriginalTables& tables, const std::string& key) {
   Bytes bytes;
   bytes.put(byte_order);
   each(bytes, tables, [&](const auto& value) { bytes.put(value); });
-  return format_line + key + "\n" + sha256_hex(bytes.text) + "\n" + bytes.text;
+  return sealed(format_line, key, bytes.text);
 }
 
 std::optional<OriginalTables> from_entry(std::string_view bytes, const std::string& key) {
-  const std::string head = format_line + key + "\n";
-  constexpr std::size_t digits = 64;
-  if (bytes.size() < head.size() + digits + 1 || bytes.substr(0, head.size()) != head) return {};
-  bytes.remove_prefix(head.size());
-  const auto sum = bytes.substr(0, digits);
-  bytes.remove_prefix(digits + 1);
-  if (sha256_hex(bytes) != sum) return {};
-  Reader reader(bytes);
+  const auto payload = payload_of(bytes, format_line, key);
+  if (!payload) return {};
+  Reader reader(*payload);
   std::uint32_t order = 0;
   reader.get(order);
   OriginalTables t;

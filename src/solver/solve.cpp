@@ -37,11 +37,12 @@ bool needs_facets(const MethodChoice& choice, const Scene& scene, const PlacedSc
 }
 
 SolveReport run_method(const MethodChoice& choice, const RunSettings& run, const Scene& scene, const PlacedScene& placed,
-                       const std::optional<FacetScene>& facets, IrradianceSink& sink, Progress& progress) {
+                       const std::optional<FacetScene>& facets, OperatorStore* operators, IrradianceSink& sink, Progress& progress) {
   if (choice.method == "instantiation") {
     auto settings = instantiation_settings(choice, run);
     const auto classes = classes_of_policies(scene);
     settings.classes = classes ? &*classes : nullptr;
+    settings.store = operators;
     return solve_instantiation(scene, placed, settings, sink, progress);
   }
   if (choice.method != "reference") return solve_radiosity(scene, *facets, radiosity_settings(choice, run), sink, progress);
@@ -179,7 +180,7 @@ class Run {
     // other lines for every solve, so that their errors have little in common
     RunSettings run = run_;
     run.seed = seed_of(run_) + solved_.size();
-    report = run_method(result_.choice, run, scene_, placed_, facets_, both ? *both : rows, progress_);
+    report = run_method(result_.choice, run, scene_, placed_, facets_, caller_.operators, both ? *both : rows, progress_);
     count_program();
     if (structures) structures->append(report.structures);
     sink_.end(progress_);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <sunfleck/core/progress.hpp>
+#include <sunfleck/instantiation/operator_store.hpp>
 #include <sunfleck/policy/classes.hpp>
 #include <sunfleck/scene/placed_scene.hpp>
 #include <sunfleck/scene/run_settings.hpp>
@@ -37,6 +38,7 @@ struct InstantiationSettings : SolveSettings {
   /// Which structures stand in for others until these are opened, for plants that name a policy and are placed once; null = none.
   const Classification* classes = nullptr;
   InstantiationDensity density = instantiation_density(Quality::standard);
+  OperatorStore* store = nullptr;  ///< operators that are kept from solve to solve; null = none are
 };
 
 /// Throws InputError where a scene has what this method does not know: lamps, sensors.

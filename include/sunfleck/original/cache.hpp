@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include <sunfleck/core/cache_folder.hpp>
 #include <sunfleck/core/progress.hpp>
 #include <sunfleck/original/measure.hpp>
 
@@ -23,15 +24,13 @@ enum class CacheState {
 };
 std::string name_of(CacheState state);
 
-/// A folder with one file per original, KEY.original. Complete or absent: entries grow under a temporary name and are renamed, so that
-/// any number of processes share a folder without locks. Every entry carries its key and a checksum; what does not fit is measured anew.
-/// Beyond the limit those that were not used for longest go. A folder that cannot be made, read or written costs a message, once, and time.
+/// A folder (CacheFolder) with one file per original, KEY.original; what does not fit is measured anew.
 class OriginalCache {
  public:
   /// An empty folder name is no cache.
   OriginalCache(std::string folder, std::uint64_t limit_bytes, Progress& progress);
 
-  const std::string& folder() const { return folder_; }
+  const std::string& folder() const { return files_.folder(); }
   /// Reads or measures.
   OriginalTables tables(const OriginalGeometry& geometry, const MeasureSettings& settings, CacheState& state);
   /// The entry, if there is a sound one; `damaged` tells that there was another.
@@ -40,13 +39,8 @@ class OriginalCache {
   bool store(const std::string& key, const OriginalTables& tables);
 
  private:
-  void warn(const std::string& text);
-  void shrink(const std::string& newest) const;
-
-  std::string folder_;
-  std::uint64_t limit_bytes_;
+  CacheFolder files_;
   Progress& progress_;
-  bool warned_ = false;
 };
 
 inline constexpr std::uint64_t default_cache_bytes = std::uint64_t{256} << 20;
