@@ -1,6 +1,7 @@
 #include "instantiation/members.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <map>
 
 #include <fmt/format.h>
@@ -66,7 +67,7 @@ OriginalLight original_light(const Scene& scene, const Approximation& approximat
   const double finer = times_finer(facets, fewest_organs);
   settings.density.elements_per_organ = elements_per_organ * finer;
   settings.density.fewest_organs = 1.0;  // see times_finer()
-  if (density.field_pixels < fewest_pixels_of_shades) settings.density.least_unevenness = 1e9;
+  if (density.field_pixels < fewest_pixels_of_shades) settings.density.least_unevenness = std::numeric_limits<double>::infinity();
   out.elements = make_elements(own, facets, settings);
   out.facet_material = facets.optics;
   const double pitch = std::sqrt(0.5 * out.elements.organ_area / finer / density.lines_per_organ);

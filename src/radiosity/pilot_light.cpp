@@ -13,7 +13,6 @@ namespace sunfleck {
 namespace {
 
 constexpr std::uint64_t pilot_stream = 0x3c6ef372fe94f82bULL;
-constexpr int reflections = 12;  ///< what later ones add hardly changes which of two cells is the brighter
 
 struct Meeting {
   std::uint32_t low, high;  ///< sides that see each other
@@ -40,7 +39,7 @@ struct Brightest {
 
 }  // namespace
 
-PilotLight pilot_light(const FacetScene& facets, const Elements& e, std::uint32_t directions, double pitch) {
+PilotLight pilot_light(const FacetScene& facets, const Elements& e, std::uint32_t directions, double pitch, int reflections) {
   std::vector<Met> met(directions);
   tbb::enumerable_thread_specific<LineBundle> bundles;
   tbb::parallel_for(std::uint32_t{0}, directions, [&](std::uint32_t d) {

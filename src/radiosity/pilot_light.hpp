@@ -14,7 +14,7 @@ struct PilotLight {
   std::vector<float> lines, sum, squares;  ///< [2 * cells] number, sum and sum of squares over the lines
 };
 
-/// Reflections are followed from cell to cell, over lines of so many directions that are `pitch` apart [m].
-PilotLight pilot_light(const FacetScene& facets, const Elements& elements, std::uint32_t directions, double pitch);
+/// So many reflections are followed from cell to cell, over lines of so many directions that are `pitch` apart [m].
+PilotLight pilot_light(const FacetScene& facets, const Elements& elements, std::uint32_t directions, double pitch, int reflections);
 
 }  // namespace sunfleck

@@ -10,9 +10,10 @@ namespace sunfleck {
 
 namespace {
 
-constexpr double pilot_share = 0.04;        ///< of a scene's lines: as many more look where light falls off
-constexpr double shades_share = 0.4;        ///< and so many more, where it does, find where exactly
-constexpr double fewest_pilot_lines = 5e4;  ///< cost nothing
+constexpr double pilot_share = 0.03;              ///< of a scene's lines: as many more look where light falls off
+constexpr double shades_share = 0.4;              ///< and so many more, where it does, find where exactly
+constexpr double fewest_pilot_lines = 5e4;        ///< cost nothing
+constexpr double fewest_lines_of_element = 15.0;  ///< of a pilot: fewer tell nothing, and are not traced
 constexpr double fewest_shades_lines = 1.5e6;
 constexpr double most_lines_of_organ = 12800.0;  ///< beyond them, cells of a shade could not be told apart anyway
 constexpr double sun_lines_of_cell = 12.0;       ///< facing the sun: smaller cells would be met by none too often
@@ -56,11 +57,14 @@ class ShadeFinder {
   }
   /// The scene is one copy of one plant, and nothing else.
   Shades find(const Scene& scene, const FacetScene& facets) const {
-    constexpr std::uint32_t few_directions = 16, directions = 64;
+    constexpr std::uint32_t few_directions = 8, directions = 64;
     const bool flat = settings_.method == RadiosityMethod::flat;
     const auto pitch = [&](double lines, std::uint32_t of) { return std::sqrt(0.5 * sizes_.organ * of / lines); };
     const double few = of_organ(std::max(fewest_pilot_lines, pilot_share * lines_));
-    Elements elements = gather_elements(scene, facets, flat, sizes_, splits_of(facets, 0.5 * sizes_.element));
+    if (few * sizes_.element < fewest_lines_of_element * sizes_.organ) return {};
+    const auto coarse = splits_of(facets, 0.5 * sizes_.element);
+    if (flat && std::all_of(coarse.begin(), coarse.end(), [](std::uint16_t k) { return k == 1; })) return {};  // elements of one cell
+    Elements elements = gather_elements(scene, facets, flat, sizes_, coarse);
     if (unevenness(facets, elements, few_directions, pitch(few, few_directions)) < settings_.density.least_unevenness) return {};
     const double lines = of_organ(std::max(fewest_shades_lines, shades_share * lines_));
     const double cell = sizes_.organ * std::max(sun_lines_of_cell / settings_.density.sun_lines_per_organ, pilot_lines_of_cell / lines);
@@ -90,6 +94,7 @@ PlantShades plant_shades(const Scene& scene, const FacetScene& facets, const Rad
   PlantShades out;
   out.of_copy.assign(facets.copies.size(), PlantShades::none);
   out.first_facet.assign(1, 0);
+  if (std::isinf(settings.density.least_unevenness)) return out;
   using Alike = std::pair<const Plant*, std::vector<std::uint32_t>>;
   std::map<Alike, std::uint32_t> first_copy;
   double area_once = 0;

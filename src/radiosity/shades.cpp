@@ -16,6 +16,8 @@ namespace {
 constexpr double least_gain = 4e-4;    ///< variance x area that a cut takes away, over the area of an element
 constexpr double significance = 8.0;   ///< of a cut's gain, over the variance of single lines
 constexpr double fewest_lines = 10.0;  ///< on either side of a cut
+constexpr int few_reflections = 6;     ///< tell whether light falls off
+constexpr int reflections = 12;        ///< what later ones add hardly changes which of two cells is the brighter
 
 /// Sums over cells: front and back.
 struct Sums {
@@ -175,8 +177,9 @@ struct ShadesOfCells {
   std::vector<double> removed;       ///< [elements] variance x area that shades take away
 };
 
-ShadesOfCells shades_of_cells(const FacetScene& facets, const Elements& e, std::uint32_t directions, double pitch, double least) {
-  const PilotLight pilot = pilot_light(facets, e, directions, pitch);
+ShadesOfCells shades_of_cells(const FacetScene& facets, const Elements& e, std::uint32_t directions, double pitch, int followed,
+                              double least) {
+  const PilotLight pilot = pilot_light(facets, e, directions, pitch, followed);
   ShadesOfCells out{std::vector<std::uint16_t>(e.surface.cells(), 0), std::vector<double>(e.size())};
   const Cutter cutter(e, pilot, least);
   tbb::parallel_for(std::size_t{0}, e.size(), [&](std::size_t i) { out.removed[i] = cutter.cut(i, out.shade); });
@@ -186,13 +189,13 @@ ShadesOfCells shades_of_cells(const FacetScene& facets, const Elements& e, std::
 }  // namespace
 
 double unevenness(const FacetScene& facets, const Elements& e, std::uint32_t directions, double pitch) {
-  const auto removed = shades_of_cells(facets, e, directions, pitch, 0.0).removed;
+  const auto removed = shades_of_cells(facets, e, directions, pitch, few_reflections, 0.0).removed;
   const double area = std::accumulate(e.area.begin(), e.area.end(), 0.0);
   return area > 0.0 ? std::accumulate(removed.begin(), removed.end(), 0.0) / area : 0.0;
 }
 
 Shades find_shades(const FacetScene& facets, const Elements& e, std::uint32_t directions, double pitch) {
-  const auto shade = shades_of_cells(facets, e, directions, pitch, least_gain).shade;
+  const auto shade = shades_of_cells(facets, e, directions, pitch, reflections, least_gain).shade;
   if (std::all_of(shade.begin(), shade.end(), [](std::uint16_t k) { return k == 0; })) return {};
   const auto& s = e.surface;
   std::vector<std::uint32_t> row_of_facet(s.size());

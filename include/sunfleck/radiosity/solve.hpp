@@ -27,7 +27,8 @@ struct RadiosityDensity {
   double tolerance = 0;              ///< relative true residual of the iteration [-]
   double fewest_hits = 0;            ///< of global lines on plants, over all directions: small scenes get a finer grid [-]
   double fewest_organs = 1.0;        ///< that are reckoned with: few names are no reason for large elements; not by method flat [-]
-  double least_unevenness = 3e-3;    ///< of light within elements, from which on plants are cut by shades, see unevenness() [-]
+  double least_unevenness =
+      3e-3;  ///< of light within elements, from which on plants are cut by shades, see unevenness(); infinite: not looked for [-]
 };
 RadiosityDensity density_of(Quality quality);
 
