@@ -70,6 +70,9 @@ void check_goal(const SolveOptions& options) {
   if (!options.error) return;
   if (options.quality) throw UsageError("--error: found with --quality; expected one of them, as --error chooses the densities itself");
   if (!options.certificate) throw UsageError("--error: found with --no-certificate; expected to be judged by the certificate");
+  if (options.method == "direct" || options.method == "reference")
+    throw UsageError(fmt::format("--error: found method '{}'; expected instantiation, clustering or flat ({})", *options.method,
+                                 options.method == "direct" ? "'direct' leaves scattered light out" : "'reference' takes samples"));
 }
 
 void say_timings(const SolveReport& report, std::uint64_t facets, double seconds, Progress& progress) {
