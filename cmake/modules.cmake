@@ -5,6 +5,9 @@ function(sunfleck_options target)
   if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
     target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wno-restrict -Werror)
   endif()
+  if(CMAKE_UNITY_BUILD)  # files are compiled together: each one's private names stand in sight of the others'
+    target_compile_options(${target} PRIVATE -Wno-shadow)
+  endif()
   target_compile_options(${target} PRIVATE -fno-math-errno -fno-trapping-math)  # lets loops with rounding be vectorised; changes no result
   if(SUNFLECK_ISA)
     target_compile_options(${target} PRIVATE -march=${SUNFLECK_ISA})

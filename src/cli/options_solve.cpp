@@ -11,7 +11,7 @@ constexpr const char* method_help =
     "says, "
     "else instantiation where enough repeats and copies stand free of each other, else clustering";
 constexpr const char* quality_help = "accuracy against time: 'draft', 'standard' (the default) or 'fine'";
-const std::vector<std::string> qualities{"draft", "standard", "fine"};
+const std::vector<std::string> quality_names{"draft", "standard", "fine"};
 
 }  // namespace
 
@@ -21,7 +21,7 @@ void define_solve(CLI::App& verb, SolveOptions& o) {
       ->required()
       ->type_name("RESULT.h5");
   verb.add_option("--method", o.method, method_help)->type_name("NAME");
-  verb.add_option("--quality", o.quality, quality_help)->type_name("NAME")->check(one_of(qualities));
+  verb.add_option("--quality", o.quality, quality_help)->type_name("NAME")->check(one_of(quality_names));
   verb.add_option(
           "--error", o.error,
           "wanted rms error of an organ's absorbed light, of the mean: 2%, or 0.02, or by band, PAR=1%,NIR=2%. Solves at draft, and "
@@ -71,7 +71,7 @@ void define_solve(CLI::App& verb, SolveOptions& o) {
 void define_plan(CLI::App& verb, PlanOptions& o) {
   verb.add_option("SCENE", o.scene, "scene file, TOML")->required()->type_name("");
   verb.add_option("--method", o.method, method_help)->type_name("NAME");
-  verb.add_option("--quality", o.quality, quality_help)->type_name("NAME")->check(one_of(qualities));
+  verb.add_option("--quality", o.quality, quality_help)->type_name("NAME")->check(one_of(quality_names));
   verb.add_option("--threads", o.threads, "threads that the solve will use; 0 is all cores. More threads hold more memory")
       ->type_name("N")
       ->check(count_from(0, 4096));

@@ -20,7 +20,7 @@ namespace sunfleck {
 namespace {
 
 constexpr char stop = 's', end = 'e';
-constexpr int stopped = 4;  // exit code
+constexpr int exit_stopped = 4;  // exit code
 
 std::atomic<int> pipe_of_current{-1};
 static_assert(std::atomic<int>::is_always_lock_free);
@@ -72,7 +72,7 @@ void OverdueStop::watch() const {
     if (next_word(read_, static_cast<int>(left.count()), stop) == end) return;
   UnfinishedFiles::all().remove();
   tell(fmt::format("sunfleck: {}\n", Stopped().what()));
-  ::_exit(stopped);
+  ::_exit(exit_stopped);
 }
 
 }  // namespace sunfleck

@@ -19,7 +19,7 @@ namespace sunfleck {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 constexpr double most_scale = 1e6;
 
 struct Object {

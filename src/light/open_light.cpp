@@ -4,17 +4,14 @@
 #include <cmath>
 #include <numbers>
 
+#include <light/angles.hpp>
+
 namespace sunfleck {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 constexpr int steps = 64;  // of the sine of the elevation, and of the azimuth
-
-Vec3 direction(double z, double azimuth) {
-  const double r = std::sqrt(std::max(0.0, 1.0 - z * z));
-  return {r * std::cos(azimuth), r * std::sin(azimuth), z};
-}
 
 }  // namespace
 
@@ -24,7 +21,7 @@ OpenSky::OpenSky(const Sky& sky) : round_(!sky.sun || sky.model != SkyModel::cle
   const int halves = sky.reaches_below_horizon() ? 2 : 1;
   for (int i = 0; i < halves * steps; ++i)
     for (int j = 0; j < steps; ++j) {
-      towards.push_back(direction(1.0 - (i + 0.5) / steps, 2.0 * pi * (j + 0.5 * (i % 2)) / steps));
+      towards.push_back(direction_at(1.0 - (i + 0.5) / steps, 2.0 * pi * (j + 0.5 * (i % 2)) / steps));
       radiance.push_back(sky.relative_radiance(towards.back()) * 2.0 * pi / (steps * steps));
     }
   const auto at = [&](const Vec3& n) {
@@ -36,7 +33,7 @@ OpenSky::OpenSky(const Sky& sky) : round_(!sky.sun || sky.model != SkyModel::cle
   const int n = round_ ? 1 : columns;
   for (int ring = 0; ring <= rings; ++ring)
     for (int column = 0; column < n; ++column)
-      value_.push_back(at(direction(std::cos(pi * ring / rings), 2.0 * pi * column / columns)) / horizontal);
+      value_.push_back(at(direction_at(std::cos(pi * ring / rings), 2.0 * pi * column / columns)) / horizontal);
 }
 
 double OpenSky::on(const Vec3& normal) const {

@@ -8,11 +8,13 @@
 
 #include <sunfleck/core/error.hpp>
 
+#include <light/angles.hpp>
+
 namespace sunfleck {
 
 namespace {
 
-constexpr double pi = std::numbers::pi, degree = pi / 180.0;
+using std::numbers::pi;
 
 /// Where x lies among rising values: low row and the part of the way to the next.
 struct Between {

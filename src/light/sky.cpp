@@ -10,7 +10,7 @@ namespace sunfleck {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /// Relative luminance of the CIE standard clear sky (CIE S 011:2003 type 12, polluted-free atmosphere; the sky of Kittler 1967),
 /// without its constant factors: gradation phi(z) = 1 - exp(-0.32 / cos z) times indicatrix

@@ -8,16 +8,13 @@
 
 #include <sunfleck/core/error.hpp>
 
+#include <light/angles.hpp>
+
 namespace sunfleck {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
-
-Vec3 direction(double z, double azimuth) {
-  const double s = std::sqrt(std::max(0.0, 1 - z * z));
-  return {s * std::cos(azimuth), s * std::sin(azimuth), z};
-}
+using std::numbers::pi;
 
 }  // namespace
 
@@ -67,11 +64,11 @@ void SkyTable::find_candidates() {
     for (std::uint32_t sector = 0; sector < sectors; ++sector) {
       const double low = static_cast<double>(ring) / rings_, high = static_cast<double>(ring + 1) / rings_;
       const double azimuth = 2 * pi * (sector + 0.5) / sectors, half = pi / sectors;
-      const Vec3 middle = direction(0.5 * (low + high), azimuth);
+      const Vec3 middle = direction_at(0.5 * (low + high), azimuth);
       double radius = 0;
       for (const double z : {low, high})
         for (const double a : {azimuth - half, azimuth, azimuth + half})
-          radius = std::max(radius, std::acos(std::clamp(glm::dot(middle, direction(z, a)), -1.0, 1.0)));
+          radius = std::max(radius, std::acos(std::clamp(glm::dot(middle, direction_at(z, a)), -1.0, 1.0)));
       double best = -1;
       for (std::size_t i = 0; i < directions_.size(); ++i) best = std::max(best, cosine[i] = glm::dot(middle, directions_[i]));
       const double reach = std::acos(std::clamp(best, -1.0, 1.0)) + 2 * radius + 1e-6, least = reach < pi ? std::cos(reach) : -2.0;
@@ -96,7 +93,7 @@ void SkyTable::each_point(Visit&& visit) const {
   const std::size_t points = std::max<std::size_t>(std::size_t{1} << 17, 400 * directions_.size());
   const double golden = pi * (3 - std::sqrt(5.0));
   for (std::size_t i = 0; i < points; ++i)
-    visit(direction((static_cast<double>(i) + 0.5) / static_cast<double>(points), golden * static_cast<double>(i)),
+    visit(direction_at((static_cast<double>(i) + 0.5) / static_cast<double>(points), golden * static_cast<double>(i)),
           2 * pi / static_cast<double>(points));
 }
 

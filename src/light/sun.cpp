@@ -1,17 +1,17 @@
 #include <sunfleck/light/sun.hpp>
 
 #include <cmath>
-#include <numbers>
 #include <span>
 
 #include <sunfleck/core/error.hpp>
 #include <sunfleck/light/time.hpp>
 
+#include <light/angles.hpp>
+
 namespace sunfleck {
 
 namespace {
 
-constexpr double degree = std::numbers::pi / 180.0;
 constexpr double arc_second = degree / 3600.0;
 
 /// One periodic term: a cos(b + c t), a in 1e-8, t in millennia from J2000.

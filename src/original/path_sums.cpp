@@ -13,7 +13,7 @@ namespace sunfleck {
 namespace {
 
 constexpr double roulette_below = 0.1;  ///< weights under this share of the first go on by chance
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /// Direction with density cos / pi about a unit normal.
 Vec3 cosine_direction(const Vec3& normal, double a, double b) {

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <vector>
 
 #include <plant/growing.hpp>
@@ -11,7 +12,7 @@ namespace sunfleck {
 
 namespace {
 
-constexpr double pi = 3.141592653589793;
+using std::numbers::pi;
 
 /// A stem, main or tiller, before it is drawn.
 struct Stem {

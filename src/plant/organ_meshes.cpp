@@ -8,7 +8,7 @@ namespace sunfleck {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 using Corner = std::uint32_t;
 
 Corner add(Mesh& mesh, const Vec3& p) {

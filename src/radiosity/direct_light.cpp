@@ -20,7 +20,7 @@ namespace sunfleck {
 namespace {
 
 constexpr std::uint64_t sky_stream = 0x51ed270b27c4f2a9ULL, sun_stream = 0x2545f4914f6cdd1dULL;
-constexpr double least_slope = 1e-3;  // of the sun's lines in periodic scenes
+constexpr double least_sun_slope = 1e-3;  // of the sun's lines in periodic scenes
 
 constexpr std::uint32_t fewest_wide_samples = 128;  ///< of the disc of a wide sun
 
@@ -330,13 +330,13 @@ class DirectLightSolver {
     std::vector<float> all(cells, 0.0f), visible(cells, 0.0f);
     double line_area = 0;  // mean over the samples
     std::vector<double> line_areas(counts.size());
-    const auto share = [&](const Vec3& d) { return s_.periodic ? static_cast<float>(share_of_level_light(d, least_slope)) : 1.0f; };
+    const auto share = [&](const Vec3& d) { return s_.periodic ? static_cast<float>(share_of_level_light(d, least_sun_slope)) : 1.0f; };
     for (std::uint32_t first = 0; first < samples; first += batch) {
       const std::uint32_t n = std::min(batch, samples - first);
       tbb::parallel_for(std::uint32_t{0}, n, [&](std::uint32_t k) {
         const std::uint32_t i = first + k;
         Vec3 d = disc[i];
-        if (d.z < least_slope && s_.periodic) d = glm::normalize(Vec3{d.x, d.y, least_slope});
+        if (d.z < least_sun_slope && s_.periodic) d = glm::normalize(Vec3{d.x, d.y, least_sun_slope});
         clear(counts[k], cells);
         const auto p = project_set_member(s_, d, i, pitch, mix(seed, 1));
         line_areas[k] = p.line_area;

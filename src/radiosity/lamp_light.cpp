@@ -11,9 +11,9 @@ namespace sunfleck {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 constexpr std::size_t most_candidates = 32;
-constexpr double least_slope = 1e-3;  // towards images of lamps
+constexpr double least_image_slope = 1e-3;  // towards images of lamps
 
 /// The part of a triangle on the positive side of the plane through the origin; at most four corners.
 int clip(const Triangle& t, const Vec3& n, Vec3* out) {
@@ -83,7 +83,7 @@ LampLight::Image LampLight::draw_image(const Vec3& p, const Vec3& n, double x, d
   const double up = rise < 0.0 ? -1.0 : 1.0, height = std::max(std::abs(rise), 0.25 * std::min(width, depth));
   Vec3 d = cosine_direction(n, x, y);
   if (d.z * up < 0.0) d = -d;
-  if (std::abs(d.z) < least_slope) return {Vec3{0.0}, 0.0};
+  if (std::abs(d.z) < least_image_slope) return {Vec3{0.0}, 0.0};
   const Vec3 at = p + height / std::abs(d.z) * d;
   const double i = std::floor((at.x - cell_->x_low) / width), j = std::floor((at.y - cell_->y_low) / depth);
   const double x0 = cell_->x_low + i * width, y0 = cell_->y_low + j * depth, z = p.z + up * height;

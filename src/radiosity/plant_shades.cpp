@@ -18,7 +18,7 @@ constexpr double fewest_shades_lines = 1.5e6;
 constexpr double most_lines_of_organ = 12800.0;  ///< beyond them, cells of a shade could not be told apart anyway
 constexpr double sun_lines_of_cell = 12.0;       ///< facing the sun: smaller cells would be met by none too often
 constexpr double pilot_lines_of_cell = 4.0;
-constexpr long most_split = 32;
+constexpr long most_shades_split = 32;
 
 /// A plant by itself, as one of its copies stands.
 struct LonePlant {
@@ -77,7 +77,7 @@ class ShadeFinder {
   static std::vector<std::uint16_t> splits_of(const FacetScene& facets, double cell) {
     std::vector<std::uint16_t> split(facets.size());
     for (std::size_t f = 0; f < split.size(); ++f)
-      split[f] = static_cast<std::uint16_t>(std::clamp(std::lround(std::sqrt(facets.area[f] / cell)), 1L, most_split));
+      split[f] = static_cast<std::uint16_t>(std::clamp(std::lround(std::sqrt(facets.area[f] / cell)), 1L, most_shades_split));
     return split;
   }
   double of_organ(double lines) const { return std::min(lines / organs_, most_lines_of_organ); }

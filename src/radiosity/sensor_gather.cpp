@@ -15,7 +15,7 @@ namespace sunfleck {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 constexpr std::uint32_t randomisations = 8;
 constexpr std::uint32_t profile_factor = 16;
 constexpr std::uint64_t sensor_stream = 0x73656e736f72ULL;

@@ -11,7 +11,7 @@ namespace sunfleck {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 constexpr int farthest_image = 2000;
 
 /// Row of rising sums in which x lies, and its part of the total.

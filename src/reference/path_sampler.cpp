@@ -16,7 +16,7 @@ namespace sunfleck {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /// Above the rounding of rays.
 double clearance_of(const RayScene& rays) {

@@ -12,7 +12,7 @@ namespace sunfleck {
 
 namespace {
 
-constexpr std::size_t rows_at_once = std::size_t{1} << 18;
+constexpr std::size_t compared_at_once = std::size_t{1} << 18;
 constexpr double area_tolerance = 1e-4, place_tolerance = 1e-3, scene_tolerance = 1e-6;
 
 using Difference = std::optional<SceneMatch::Difference>;
@@ -23,8 +23,8 @@ Difference counted(const char* what, std::size_t found, std::size_t expected) {
 }
 
 Difference area_difference(const Result& x, const Result& r) {
-  for (std::size_t first = 0; first < r.organ_count(); first += rows_at_once) {
-    const std::size_t count = std::min(rows_at_once, r.organ_count() - first);
+  for (std::size_t first = 0; first < r.organ_count(); first += compared_at_once) {
+    const std::size_t count = std::min(compared_at_once, r.organ_count() - first);
     const auto a = x.rows<float>("organs/area", first, count), b = r.rows<float>("organs/area", first, count);
     // slivers of rounding have the area that a compiler's order of operations gives them: zero, or next to it
     const float nothing = 1e-9f * *std::max_element(b.begin(), b.end());
@@ -58,12 +58,12 @@ Difference mesh_difference(const ResultGeometry& x, const ResultGeometry& r) {
   if (auto found = counted("facets of plants", x.plant_facets, r.plant_facets)) return found;
   if (cell_text(x.periodic) != cell_text(r.periodic)) return SceneMatch::Difference{cell_text(x.periodic), cell_text(r.periodic)};
   Box box;
-  for (std::size_t first = 0; first < r.facet_count(); first += rows_at_once)
-    for (const auto& corners : r.corners(first, std::min(rows_at_once, r.facet_count() - first)))
+  for (std::size_t first = 0; first < r.facet_count(); first += compared_at_once)
+    for (const auto& corners : r.corners(first, std::min(compared_at_once, r.facet_count() - first)))
       for (const auto& p : corners) box.add(p);
   const double near = box.empty() ? 0 : scene_tolerance * glm::length(box.high - box.low);
-  for (std::size_t first = 0; first < r.facet_count(); first += rows_at_once) {
-    const std::size_t count = std::min(rows_at_once, r.facet_count() - first);
+  for (std::size_t first = 0; first < r.facet_count(); first += compared_at_once) {
+    const std::size_t count = std::min(compared_at_once, r.facet_count() - first);
     const auto a = x.corners(first, count), b = r.corners(first, count);
     for (std::size_t f = 0; f < count; ++f) {
       const Vec3 front_a = area_vector(a[f]), front_b = area_vector(b[f]);
@@ -84,8 +84,8 @@ Difference mesh_difference(const ResultGeometry& x, const ResultGeometry& r) {
 /// Where only centroids are kept.
 Difference centroid_difference(const Result& x, const Result& r) {
   const auto point = [](const std::vector<double>& all, std::size_t i) { return Vec3{all[3 * i], all[3 * i + 1], all[3 * i + 2]}; };
-  for (std::size_t first = 0; first < r.facet_count(); first += rows_at_once) {
-    const std::size_t count = std::min(rows_at_once, r.facet_count() - first);
+  for (std::size_t first = 0; first < r.facet_count(); first += compared_at_once) {
+    const std::size_t count = std::min(compared_at_once, r.facet_count() - first);
     const auto a = x.rows<double>("facets/centroid", first, count), b = r.rows<double>("facets/centroid", first, count);
     const auto area = r.rows<float>("facets/area", first, count);
     for (std::size_t f = 0; f < count; ++f) {
@@ -175,8 +175,8 @@ void note_names(const Result& x, const Result& r, std::vector<std::string>& note
     if (!x.has(rows) || !r.has(rows)) continue;
     const auto names_x = x.strings(table), names_r = r.strings(table);
     bool differ = false;
-    for (std::size_t first = 0; first < r.organ_count() && !differ; first += rows_at_once) {
-      const std::size_t count = std::min(rows_at_once, r.organ_count() - first);
+    for (std::size_t first = 0; first < r.organ_count() && !differ; first += compared_at_once) {
+      const std::size_t count = std::min(compared_at_once, r.organ_count() - first);
       const auto a = x.rows<std::uint32_t>(rows, first, count), b = r.rows<std::uint32_t>(rows, first, count);
       for (std::size_t o = 0; o < count && !differ; ++o) {
         if (a[o] >= names_x.size() || b[o] >= names_r.size() || names_x[a[o]] == names_r[b[o]]) continue;

@@ -20,18 +20,18 @@ constexpr double much_covered = 100;      // cells that one plant covers: a note
 constexpr double most_covered = 1e5;      // an error
 
 /// What a plant or group holds, in the frame of what it is placed in.
-struct Contents {
+struct Occupied {
   Box box;
   double smallest = std::numeric_limits<double>::infinity();  ///< size of the smallest plant [m]
 
-  void add(const Contents& other) {
+  void add(const Occupied& other) {
     box.add(other.box);
     smallest = std::min(smallest, other.smallest);
   }
 };
 
-Contents mapped(const Contents& c, const Affine& map) {
-  Contents out;
+Occupied mapped(const Occupied& c, const Affine& map) {
+  Occupied out;
   if (c.box.empty()) return out;
   const Vec3 middle = map.point(c.box.centre()), half = 0.5 * c.box.size();
   Vec3 reach{0.0};
@@ -55,15 +55,15 @@ class Extents {
   explicit Extents(const Scene& scene) : scene_(scene), groups_(scene.groups.size()), group_known_(scene.groups.size(), false) {}
 
   void check() {
-    Contents all;
-    each_placement([&](const Contents& c, const std::string&, std::size_t, std::size_t) { all.add(c); });
+    Occupied all;
+    each_placement([&](const Occupied& c, const std::string&, std::size_t, std::size_t) { all.add(c); });
     Box everything = all.box;
     if (scene_.ground) everything.add(ground_box(*scene_.ground));
     sensors(everything);
     if (everything.empty()) return;
     const Vec3 middle = everything.centre();
     if (distance(all.box, middle) > most_sizes * all.smallest)  // perhaps: only then every copy is looked at
-      each_placement([&](const Contents& c, const std::string& name, std::size_t entry, std::size_t i) {
+      each_placement([&](const Occupied& c, const std::string& name, std::size_t entry, std::size_t i) {
         const double away = distance(c.box, middle);
         if (!c.box.empty() && away > most_sizes * c.smallest)
           fail(key_of(name, entry, i),
@@ -96,7 +96,7 @@ class Extents {
     return fmt::format("{}[{}].place[{}]", name, entry, i);
   }
 
-  const Contents& plant(std::size_t p) {
+  const Occupied& plant(std::size_t p) {
     const auto [at, added] = plants_.try_emplace(scene_.plants[p].plant.get());
     if (added) {
       at->second.box = at->first->bounds();
@@ -105,9 +105,9 @@ class Extents {
     return at->second;
   }
 
-  const Contents& group(std::size_t g) {
+  const Occupied& group(std::size_t g) {
     if (!group_known_[g]) {
-      Contents all;
+      Occupied all;
       for (const auto& m : scene_.groups[g].members) all.add(mapped(m.is_group ? group(m.index) : plant(m.index), m.placement.map));
       groups_[g] = all;
       group_known_[g] = true;
@@ -211,8 +211,8 @@ class Extents {
   }
 
   const Scene& scene_;
-  std::unordered_map<const Plant*, Contents> plants_;
-  std::vector<Contents> groups_;
+  std::unordered_map<const Plant*, Occupied> plants_;
+  std::vector<Occupied> groups_;
   std::vector<bool> group_known_;
   std::vector<double> scales_;
 };

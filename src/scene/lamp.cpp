@@ -12,7 +12,7 @@ namespace sunfleck {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 void add_mesh_copy(const LampEntry& entry, const Affine& map, Lamps& lamps) {
   auto& unit = lamps.units.back();

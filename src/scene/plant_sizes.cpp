@@ -30,7 +30,7 @@ struct Held {
     const Box all = mapped(other.box, map);
     if (all.empty()) return;
     box.add(all);
-    largest = glm::max(largest, mapped({-0.5 * other.largest, 0.5 * other.largest}, map).size());
+    largest = glm::max(largest, mapped(Box{-0.5 * other.largest, 0.5 * other.largest}, map).size());
   }
 };
 using HeldPlants = std::map<std::uint32_t, Held>;  ///< row of Scene::plants

@@ -17,9 +17,9 @@ struct Extent {
   double x, y, width, depth;
 };
 
-class Placing {
+class SensorPlacing {
  public:
-  Placing(const Scene& scene, const Box& bounds) : scene_(scene), bounds_(bounds) {}
+  SensorPlacing(const Scene& scene, const Box& bounds) : scene_(scene), bounds_(bounds) {}
 
   PlacedSensor operator()(const SensorEntry& entry) {
     key_ = "sensor." + entry.name;
@@ -121,7 +121,7 @@ Vec3 Patch::normal() const {
 }
 
 std::vector<PlacedSensor> place_sensors(const Scene& scene, const Box& bounds) {
-  Placing place(scene, bounds);
+  SensorPlacing place(scene, bounds);
   std::vector<PlacedSensor> out;
   for (const auto& entry : scene.sensors) out.push_back(place(entry));
   return out;

@@ -4,6 +4,8 @@
 #include <cctype>
 #include <initializer_list>
 
+#include "view/lower_case.hpp"
+
 namespace sunfleck {
 
 namespace {
@@ -32,12 +34,6 @@ Tint tint_of(SurfaceKind surface) {
       return {{1.31f, 0.99f, 0.70f}, {1.31f, 0.99f, 0.70f}};
   }
   return {Rgb{1.0f}, Rgb{1.0f}};
-}
-
-std::string lower(std::string_view text) {
-  std::string out(text);
-  std::transform(out.begin(), out.end(), out.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return out;
 }
 
 bool has_any(const std::string& text, std::initializer_list<std::string_view> words) {
@@ -92,7 +88,7 @@ Rgb decode_srgb(const Rgb8& encoded) {
 
 SurfaceKind surface_of(std::string_view organ_type, std::string_view optics_name) {
   SurfaceKind out = SurfaceKind::leaf;
-  if (!guess(lower(optics_name), out)) guess(lower(organ_type), out);
+  if (!guess(lower_case(optics_name), out)) guess(lower_case(organ_type), out);
   return out;
 }
 
@@ -100,7 +96,7 @@ ColourBands colour_bands(std::span<const std::string> names) {
   const auto find = [&](std::initializer_list<std::string_view> any) {
     return static_cast<std::size_t>(
         std::find_if(names.begin(), names.end(),
-                     [&](const std::string& n) { return std::find(any.begin(), any.end(), lower(n)) != any.end(); }) -
+                     [&](const std::string& n) { return std::find(any.begin(), any.end(), lower_case(n)) != any.end(); }) -
         names.begin());
   };
   const std::size_t red = find({"r", "red"}), green = find({"g", "green"}), blue = find({"b", "blue"});

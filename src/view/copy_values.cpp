@@ -15,7 +15,7 @@ namespace sunfleck {
 
 namespace {
 
-constexpr std::size_t rows_at_once = 16384;
+constexpr std::size_t copies_at_once = 16384;
 constexpr std::size_t names_in_message = 10;
 
 /// Names of placed copies; the ground's placement is none.
@@ -51,9 +51,9 @@ CopyValues copy_values(const Result& result, const ResultGeometry& geometry, con
   out.names = {"area_m2"};
   for (auto& name : value_names(result, kept, attribute_name)) out.names.push_back(std::move(name));
   bool found = false;
-  for (std::size_t first = 0; first < m; first += rows_at_once) {
+  for (std::size_t first = 0; first < m; first += copies_at_once) {
     progress.check();
-    const std::size_t count = std::min(rows_at_once, m - first);
+    const std::size_t count = std::min(copies_at_once, m - first);
     const OrganBlock organs(result, names, first, count);
     if (std::find(organs.placement.begin(), organs.placement.end(), wanted) == organs.placement.end()) {
       if (found) break;  // organs of a copy follow one another

@@ -13,7 +13,7 @@ namespace sunfleck {
 
 namespace {
 
-constexpr std::size_t rows_at_once = 16384;
+constexpr std::size_t lines_at_once = 16384;
 
 }  // namespace
 
@@ -27,9 +27,9 @@ void export_csv(const Result& result, const std::string& file, Progress& progres
   const auto put = std::back_inserter(text);
   text.append(header_line({"organ", "plant", "placement", "name", "type", "area_m2"}, result, kept));
   std::vector<double> sum(bands);
-  for (std::size_t first = 0; first < m; first += rows_at_once) {
+  for (std::size_t first = 0; first < m; first += lines_at_once) {
     progress.check();
-    const std::size_t count = std::min(rows_at_once, m - first);
+    const std::size_t count = std::min(lines_at_once, m - first);
     const OrganBlock organs(result, names, first, count);
     const auto area = result.rows<float>("organs/area", first, count);
     std::vector<LightBlock> values;

@@ -19,7 +19,7 @@ namespace sunfleck {
 
 namespace {
 
-constexpr std::size_t rows_at_once = std::size_t{1} << 16;
+constexpr std::size_t grouped_at_once = std::size_t{1} << 16;
 constexpr std::size_t layers_without_depth = 20;
 constexpr std::size_t most_layers = 1000000;
 
@@ -142,9 +142,9 @@ class GroupTable {
  private:
   void add_organs(OrganKeys& keys, const KeptValues& kept, Sums& sums) {
     const std::size_t m = result_.organ_count();
-    for (std::size_t first = 0; first < m; first += rows_at_once) {
+    for (std::size_t first = 0; first < m; first += grouped_at_once) {
       progress_.check();
-      const std::size_t count = std::min(rows_at_once, m - first);
+      const std::size_t count = std::min(grouped_at_once, m - first);
       const OrganBlock organs(result_, keys.names(), first, count);
       const auto area = result_.rows<float>("organs/area", first, count);
       std::vector<std::vector<std::uint32_t>> columns;
@@ -203,8 +203,8 @@ class GroupTable {
     // other keys are the organ's; one row number an organ is kept for each of them
     std::vector<std::vector<std::uint32_t>> columns(keys_.size());
     if (keys_.size() > 1)
-      for (std::size_t first = 0; first < result_.organ_count(); first += rows_at_once) {
-        const OrganBlock organs(result_, keys.names(), first, std::min(rows_at_once, result_.organ_count() - first));
+      for (std::size_t first = 0; first < result_.organ_count(); first += grouped_at_once) {
+        const OrganBlock organs(result_, keys.names(), first, std::min(grouped_at_once, result_.organ_count() - first));
         for (std::size_t k = 0; k < keys_.size(); ++k) {
           if (layer_ == k) continue;
           const auto rows = keys.rows(k, organs);
@@ -235,8 +235,8 @@ class GroupTable {
   std::size_t plant_facets() const {
     if (result_.has("geometry")) return result_.geometry().plant_facets;
     const std::size_t n = result_.facet_count();  // without geometry: up to the first facet of an organ without a structure
-    for (std::size_t first = 0; first < n; first += rows_at_once) {
-      const std::size_t count = std::min(rows_at_once, n - first);
+    for (std::size_t first = 0; first < n; first += grouped_at_once) {
+      const std::size_t count = std::min(grouped_at_once, n - first);
       const auto organ = result_.facet_organs(first, count);
       for (std::size_t i = 0; i < count; ++i)
         if (result_.rows<std::uint32_t>("organs/structure", organ[i], 1).front() == no_parent) return first + i;
@@ -245,9 +245,9 @@ class GroupTable {
   }
 
   void each(std::size_t n, double begin, double end, const std::function<void(std::size_t, std::size_t)>& work) const {
-    for (std::size_t first = 0; first < n; first += rows_at_once) {
+    for (std::size_t first = 0; first < n; first += grouped_at_once) {
       progress_.check();
-      const std::size_t count = std::min(rows_at_once, n - first);
+      const std::size_t count = std::min(grouped_at_once, n - first);
       work(first, count);
       progress_.fraction("export", begin + (end - begin) * static_cast<double>(first + count) / static_cast<double>(n));
     }

@@ -14,7 +14,7 @@ namespace sunfleck {
 
 namespace {
 
-constexpr std::size_t rows_at_once = 16384;
+constexpr std::size_t sensors_at_once = 16384;
 
 std::vector<StoredSensor> chosen(const Result& result, const std::vector<std::string>& names) {
   auto all = result.sensors();
@@ -102,9 +102,9 @@ std::size_t export_sensors(const Result& result, const std::string& file, const 
   out.write(header.data(), header.size());
   fmt::memory_buffer text;
   for (const auto& sensor : sensors)
-    for (std::size_t first = 0; first < sensor.size(); first += rows_at_once) {
+    for (std::size_t first = 0; first < sensor.size(); first += sensors_at_once) {
       progress.check();
-      const std::size_t end = std::min(sensor.size(), first + rows_at_once);
+      const std::size_t end = std::min(sensor.size(), first + sensors_at_once);
       for (std::size_t k = first; k < end; ++k) table.row(sensor, k, text);
       out.write(text.data(), text.size());
       text.clear();

@@ -14,7 +14,7 @@ using h5::Id;
 using h5::RowDataset;
 
 constexpr std::uint8_t vtk_triangle = 5;
-constexpr std::size_t rows_at_once = std::size_t{1} << 18;
+constexpr std::size_t dataset_rows_at_once = std::size_t{1} << 18;
 
 void check(const h5::OutputFile& file, bool good) {
   file.check(good);
@@ -40,14 +40,14 @@ void write_version(h5::OutputFile& file, hid_t group) {
 void write_offsets(h5::OutputFile& file, h5::ChunkQueue& queue, hid_t group, std::size_t n) {
   RowDataset offsets(file, queue, group, "Offsets", H5T_NATIVE_INT64, {0, n + 1, {}}, "row of Connectivity");
   RowDataset types(file, queue, group, "Types", H5T_NATIVE_UINT8, {0, n, {}}, "VTK cell type");
-  const std::vector<std::uint8_t> triangles(std::min(n, rows_at_once), vtk_triangle);
+  const std::vector<std::uint8_t> triangles(std::min(n, dataset_rows_at_once), vtk_triangle);
   std::vector<std::int64_t> rows;
-  for (std::size_t first = 0; first <= n; first += rows_at_once) {
-    const std::size_t count = std::min(rows_at_once, n + 1 - first);
+  for (std::size_t first = 0; first <= n; first += dataset_rows_at_once) {
+    const std::size_t count = std::min(dataset_rows_at_once, n + 1 - first);
     rows.clear();
     for (std::size_t i = 0; i < count; ++i) rows.push_back(static_cast<std::int64_t>(3 * (first + i)));
     offsets.append(0, rows.data(), count);
-    if (const std::size_t cells = std::min(rows_at_once, n - first); cells > 0) types.append(0, triangles.data(), cells);
+    if (const std::size_t cells = std::min(dataset_rows_at_once, n - first); cells > 0) types.append(0, triangles.data(), cells);
   }
   offsets.finish(), types.finish();
   queue.flush();

@@ -11,7 +11,7 @@ namespace sunfleck {
 
 namespace {
 
-constexpr std::size_t rows_at_once = std::size_t{1} << 16;
+constexpr std::size_t coloured_at_once = std::size_t{1} << 16;
 constexpr std::size_t most_samples = 1000000;  // facets that set exposure or scale; every k-th of more
 
 }  // namespace
@@ -56,9 +56,9 @@ LitColours::LitColours(const Result& result, const ResultGeometry& geometry, con
   const std::size_t n = geometry.facet_count(), step = n / most_samples + 1;
   std::vector<float> luminances;
   std::vector<double> numbers;
-  for (std::size_t first = 0; first < n; first += rows_at_once) {
+  for (std::size_t first = 0; first < n; first += coloured_at_once) {
     progress.check();
-    const std::size_t count = std::min(rows_at_once, n - first), start = (step - first % step) % step;
+    const std::size_t count = std::min(coloured_at_once, n - first), start = (step - first % step) % step;
     if (natural_) {
       const auto colours = light(first, count);
       for (std::size_t i = start; i < count; i += step) luminances.push_back(luminance(colours[i]));

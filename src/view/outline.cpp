@@ -10,20 +10,20 @@ namespace sunfleck {
 
 namespace {
 
-constexpr std::size_t directions = 256;
+constexpr std::size_t outline_directions = 256;
 
 std::vector<Vec3> axes() {
   std::vector<Vec3> out{{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
   const double turn = std::numbers::pi * (3 - std::sqrt(5.0));
-  for (std::size_t i = 0; out.size() < directions; ++i) {  // Fibonacci's sphere
-    const double z = 1 - (2 * static_cast<double>(i) + 1) / static_cast<double>(directions - 6), r = std::sqrt(1 - z * z);
+  for (std::size_t i = 0; out.size() < outline_directions; ++i) {  // Fibonacci's sphere
+    const double z = 1 - (2 * static_cast<double>(i) + 1) / static_cast<double>(outline_directions - 6), r = std::sqrt(1 - z * z);
     out.push_back({r * std::cos(turn * static_cast<double>(i)), r * std::sin(turn * static_cast<double>(i)), z});
   }
   return out;
 }
 
 std::vector<Vec3> farthest(const std::vector<Vec3>& points) {
-  if (points.size() <= directions) return points;
+  if (points.size() <= outline_directions) return points;
   const auto all = axes();
   std::vector<std::size_t> best(all.size());
   tbb::parallel_for(std::size_t{0}, all.size(), [&](std::size_t k) {

@@ -6,15 +6,11 @@
 
 #include <fmt/format.h>
 
+#include "view/lower_case.hpp"
+
 namespace sunfleck {
 
 namespace {
-
-std::string lower(std::string_view text) {
-  std::string out(text);
-  std::transform(out.begin(), out.end(), out.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return out;
-}
 
 bool digits(std::string_view text) {
   return !text.empty() && std::all_of(text.begin(), text.end(), [](unsigned char c) { return std::isdigit(c) != 0; });
@@ -63,7 +59,7 @@ bool is_loopback_host(std::string_view host) {
     if (!digits(host.substr(colon + 1))) return false;
     host = host.substr(0, colon);
   }
-  const std::string name = lower(host);
+  const std::string name = lower_case(host);
   return name == "localhost" || (name.size() > 10 && name.ends_with(".localhost")) || loopback_address(name);
 }
 
@@ -73,8 +69,8 @@ std::string token_cookie(int port) {
 
 Verdict judge(const GuardedRequest& request, const GuardRule& rule) {
   if (request.host.empty() || (rule.loopback_only && !is_loopback_host(request.host))) return Verdict::foreign_host;
-  if (!request.origin.empty() && lower(request.origin) != "http://" + lower(request.host) &&
-      lower(request.origin) != "https://" + lower(request.host))
+  if (!request.origin.empty() && lower_case(request.origin) != "http://" + lower_case(request.host) &&
+      lower_case(request.origin) != "https://" + lower_case(request.host))
     return Verdict::foreign_origin;
   if (!request.fetch_site.empty() && request.fetch_site != "same-origin" && request.fetch_site != "none") return Verdict::foreign_origin;
   for (const char* frame : {"iframe", "frame", "fencedframe", "embed", "object"})

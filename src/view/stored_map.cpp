@@ -15,7 +15,7 @@ namespace sunfleck {
 
 namespace {
 
-constexpr std::size_t rows_at_once = std::size_t{1} << 16;
+constexpr std::size_t mapped_at_once = std::size_t{1} << 16;
 
 /// One value a facet or side of a dataset [states][rows][width]: element `column` (front) and, for sides, `column + stride` (back).
 struct Column {
@@ -71,8 +71,8 @@ LightSource::Read MapMaker::read_column(const Result& result, const Column& colu
     };
   std::vector<float> means;
   const std::size_t m = result.organ_count();
-  for (std::size_t first = 0; first < m; first += rows_at_once) {
-    const std::size_t count = std::min(rows_at_once, m - first);
+  for (std::size_t first = 0; first < m; first += mapped_at_once) {
+    const std::size_t count = std::min(mapped_at_once, m - first);
     auto part = pick(result.state_rows<float>("organs/" + column.dataset, choice_.state, first, count));
     if (column.dataset == "absorbed") {  // organs keep it in W
       const auto area = result.rows<float>("organs/area", first, count);
@@ -101,15 +101,15 @@ double MapMaker::mean_absorbed(const Result& reference) const {
   if (reference.has("organs/absorbed")) {
     const std::size_t plants =
         facets_->plant_facets < facets_->size ? facets_->organ(facets_->plant_facets, 1)[0] : reference.organ_count();
-    for (std::size_t first = 0; first < plants; first += rows_at_once) {
-      const std::size_t count = std::min(rows_at_once, plants - first);
+    for (std::size_t first = 0; first < plants; first += mapped_at_once) {
+      const std::size_t count = std::min(mapped_at_once, plants - first);
       const auto rows = reference.state_rows<float>("organs/absorbed", choice_.state, first, count);
       for (std::size_t i = 0; i < count; ++i) power += rows[i * b + choice_.band];
       for (const float a : reference.rows<float>("organs/area", first, count)) area += a;
     }
   } else {
-    for (std::size_t first = 0; first < facets_->plant_facets; first += rows_at_once) {
-      const std::size_t count = std::min(rows_at_once, facets_->plant_facets - first);
+    for (std::size_t first = 0; first < facets_->plant_facets; first += mapped_at_once) {
+      const std::size_t count = std::min(mapped_at_once, facets_->plant_facets - first);
       const auto rows = reference.state_rows<float>("facets/absorbed", choice_.state, first, count),
                  areas = reference.rows<float>("facets/area", first, count);
       for (std::size_t i = 0; i < count; ++i) power += static_cast<double>(areas[i]) * rows[i * b + choice_.band], area += areas[i];
@@ -173,13 +173,13 @@ ValueScale MapMaker::scale() const {
     return {range[0], range[1], choice_.logarithmic};
   }
   const std::size_t end = facets_->plant_facets > 0 && !choice_.ground ? facets_->plant_facets : facets_->size, k = map_.sides ? 2 : 1;
-  constexpr std::size_t most = std::size_t{1} << 24, blocks = most / rows_at_once;
-  const std::size_t all = (end + rows_at_once - 1) / rows_at_once, taken = std::min(all, blocks);
+  constexpr std::size_t most = std::size_t{1} << 24, blocks = most / mapped_at_once;
+  const std::size_t all = (end + mapped_at_once - 1) / mapped_at_once, taken = std::min(all, blocks);
   std::vector<double> values;
   for (std::size_t i = 0; i < taken; ++i) {
     progress_.check();
     progress_.fraction("scale", static_cast<double>(i) / static_cast<double>(taken));
-    const std::size_t first = i * all / taken * rows_at_once, count = std::min(rows_at_once, end - first);
+    const std::size_t first = i * all / taken * mapped_at_once, count = std::min(mapped_at_once, end - first);
     const auto rows = map_.values(first, count), area = facets_->area(first, count);
     for (std::size_t j = 0; j < rows.size(); ++j)
       if (area[j / k] > 0) values.push_back(rows[j]);

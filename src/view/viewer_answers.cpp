@@ -10,17 +10,13 @@
 #include <sunfleck/core/version.hpp>
 #include <sunfleck/view/text.hpp>
 
+#include "view/lower_case.hpp"
+
 namespace sunfleck {
 
 namespace {
 
 using nlohmann::json;
-
-std::string lower(std::string_view text) {
-  std::string out(text);
-  std::transform(out.begin(), out.end(), out.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return out;
-}
 
 std::string css(const Rgb8& c) {
   return fmt::format("#{:02x}{:02x}{:02x}", c[0], c[1], c[2]);
@@ -114,11 +110,11 @@ json placements(const ViewerScene& scene, const std::string& text, std::size_t m
     const auto p = organs.placement[o];
     ++number[p], plant[p] = organs.plant[o], area[p] += scene.organ_area(o);
   }
-  const std::string wanted = lower(text);
+  const std::string wanted = lower_case(text);
   json rows = json::array();
   std::size_t total = 0;
   for (std::size_t p = 0; p < count; ++p) {
-    if (number[p] == 0 || lower(organs.placements[p]).find(wanted) == std::string::npos) continue;
+    if (number[p] == 0 || lower_case(organs.placements[p]).find(wanted) == std::string::npos) continue;
     ++total;
     if (rows.size() < most)
       rows.push_back(
@@ -167,15 +163,15 @@ json pick(const ViewerScenes& scenes, const ViewerView& view, double x, double y
 
 json search_organs(const ViewerScene& scene, const std::string& text, std::size_t most) {
   const auto& organs = scene.scene().organs;
-  const std::string wanted = lower(text);
+  const std::string wanted = lower_case(text);
   // Names are few where organs are many: each is compared once.
   std::vector<std::string> names, placements;
   std::vector<std::uint8_t> match;
   for (const auto& name : organs.names) {
-    names.push_back(lower(name));
+    names.push_back(lower_case(name));
     match.push_back(names.back().starts_with(wanted) ? 2 : names.back().find(wanted) != std::string::npos ? 1 : 0);
   }
-  for (const auto& placement : organs.placements) placements.push_back(lower(placement));
+  for (const auto& placement : organs.placements) placements.push_back(lower_case(placement));
   std::size_t total = 0;
   std::vector<std::size_t> first, second;
   const bool path = wanted.find('/') != std::string::npos || wanted.find('[') != std::string::npos;

@@ -15,7 +15,7 @@ namespace sunfleck {
 namespace {
 
 constexpr int most_pixels = 8'000'000;
-constexpr double far_away = 1e12;  ///< [m]
+constexpr double beyond_all = 1e12;  ///< [m]
 
 [[noreturn]] void refuse(const std::string& name, const std::string& found, const std::string& expected) {
   throw UsageError(fmt::format("{}: found '{}'; expected {}", name, found.substr(0, 80), expected));
@@ -33,7 +33,7 @@ std::vector<double> numbers(const std::string& name, const std::string& text, st
   for (std::size_t at = 0; at <= text.size();) {
     const std::size_t comma = std::min(text.find(',', at), text.size());
     const auto value = number(std::string_view(text).substr(at, comma - at));
-    if (!value || std::fabs(*value) > far_away) break;
+    if (!value || std::fabs(*value) > beyond_all) break;
     out.push_back(*value);
     at = comma + 1;
     if (comma == text.size()) break;
@@ -136,7 +136,7 @@ ViewerView read_view(const Parameters& parameters, const ViewerScenes& scenes) {
   }
   v.camera.azimuth_deg = read_number(parameters, "azimuth", 150, -1e6, 1e6);
   v.camera.elevation_deg = read_number(parameters, "elevation", 25, -89.9, 89.9);
-  v.camera.distance = read_number(parameters, "distance", 1, 1e-9, far_away);
+  v.camera.distance = read_number(parameters, "distance", 1, 1e-9, beyond_all);
   v.camera.field_of_view_deg = read_number(parameters, "fov", 35, 1, 120);
   v.camera.orthographic = read_flag(parameters, "orthographic", false);
   if (const auto text = parameters("target")) {

@@ -14,8 +14,8 @@ namespace sunfleck {
 
 namespace {
 
-constexpr double least_slope = 1e-4;  // of rays in periodic scenes
-constexpr double most_cells = 1e6;    // that a ray is wrapped through
+constexpr double least_slope_among_copies = 1e-4;  // of rays in periodic scenes
+constexpr double most_cells_wrapped = 1e6;    // that a ray is wrapped through
 
 }  // namespace
 
@@ -126,14 +126,14 @@ struct CopyRays::Impl {
       if (!segment(in, p, d, skip, range, r)) return {};
       return found(r, p + static_cast<double>(r.ray.tfar) * d, static_cast<double>(r.ray.tfar));
     }
-    if (std::fabs(d.z) < least_slope) d = glm::normalize(Vec3{d.x, d.y, d.z < 0 ? -least_slope : least_slope});
+    if (std::fabs(d.z) < least_slope_among_copies) d = glm::normalize(Vec3{d.x, d.y, d.z < 0 ? -least_slope_among_copies : least_slope_among_copies});
     const double width = scene.periodic->width(), depth = scene.periodic->depth();
     const double slack = 1e-6 * std::max({width, depth, box.size().z});  // level ground is at the very end, in single precision
     const double low = box.low.z - centre.z - slack, high = box.high.z - centre.z + slack;
     p.x -= width * std::floor(p.x / width);
     p.y -= depth * std::floor(p.y / depth);
     double travelled = 0, from = skip;
-    for (double cells = 0; cells < most_cells; ++cells) {
+    for (double cells = 0; cells < most_cells_wrapped; ++cells) {
       const double to_x = d.x > 0 ? (width - p.x) / d.x : d.x < 0 ? -p.x / d.x : std::numeric_limits<double>::infinity();
       const double to_y = d.y > 0 ? (depth - p.y) / d.y : d.y < 0 ? -p.y / d.y : std::numeric_limits<double>::infinity();
       const double to_end = d.z > 0 ? (high - p.z) / d.z : (low - p.z) / d.z;

@@ -15,6 +15,7 @@
 #include <sunfleck/visibility/projection.hpp>
 
 #include "depth_buffer.hpp"
+#include "golden_ratio.hpp"
 #include "rasterise.hpp"
 
 namespace sunfleck {
@@ -25,9 +26,8 @@ constexpr int tile = 256;                    // lines
 constexpr std::uint32_t chunk_rows = 32;     // triangles that are left out of a tile together
 constexpr std::uint32_t most_count = 65535;  // narrow counts are 16 bits wide and stay at their largest value
 constexpr double most_expected = 32000;      // lines through a cell that narrow counts are trusted with
-constexpr double least_slope = 1e-3;         // of lines in periodic scenes
-constexpr double fewest_lines = 1024;        // through a cell of a periodic scene
-constexpr double golden_ratio_fraction = 0.6180339887498949;
+constexpr double least_slope_of_lines = 1e-3;         // of lines in periodic scenes
+constexpr double fewest_cell_lines = 1024;        // through a cell of a periodic scene
 
 /// Bounding spheres of runs of triangles of a surface.
 struct Chunk {
@@ -116,12 +116,12 @@ std::uint8_t in_255ths(std::uint64_t visible, std::uint64_t all, std::uint64_t s
 
 /// How many more lines than `pitch` [m] says go through a scene: small cells of periodic ones have at least some.
 double times_finer(const CopyScene& scene, const Vec3& d, double pitch) {
-  return scene.periodic ? std::max(1.0, fewest_lines * pitch * pitch / (scene.periodic->area() * d.z)) : 1.0;
+  return scene.periodic ? std::max(1.0, fewest_cell_lines * pitch * pitch / (scene.periodic->area() * d.z)) : 1.0;
 }
 
 /// The direction that lines are followed along.
 Vec3 followed(const CopyScene& scene, const Vec3& d) {
-  return scene.periodic && d.z < least_slope ? glm::normalize(Vec3{d.x, d.y, least_slope}) : d;
+  return scene.periodic && d.z < least_slope_of_lines ? glm::normalize(Vec3{d.x, d.y, least_slope_of_lines}) : d;
 }
 
 class LitCellsCounter {
@@ -433,7 +433,7 @@ LitCells lit_cells(const CopyScene& scene, const std::vector<Vec3>& directions, 
     progress.fraction("sun", static_cast<double>(i) / static_cast<double>(directions.size()));
     const auto shift = r2_point(i, unit_interval(mix(seed, 1)), unit_interval(mix(seed, 2)));
     const Vec3 d = followed(scene, directions[i]);
-    const double share = scene.periodic ? share_of_level_light(directions[i], least_slope) : 1.0;
+    const double share = scene.periodic ? share_of_level_light(directions[i], least_slope_of_lines) : 1.0;
     const double turn = static_cast<double>(i) * golden_ratio_fraction + unit_interval(mix(seed, 3));
     for (const double p : pitches)
       counter.project(d, share, mix(seed, 4, i), p, 2.0 * std::numbers::pi * (turn - std::floor(turn)), shift[0], shift[1]);

@@ -8,11 +8,12 @@
 #include <sunfleck/core/error.hpp>
 #include <sunfleck/core/sampling.hpp>
 
+#include "golden_ratio.hpp"
+
 namespace sunfleck {
 
 namespace {
 
-constexpr double golden_ratio_fraction = 0.6180339887498949;
 constexpr double fewest_periodic_lines = 1024.0;  ///< towards the zenith
 constexpr double most_layers = 64.0;              ///< of surfaces over the cell, for which so many lines are affordable
 

@@ -71,6 +71,32 @@ std::vector<Definition> types_defined(const std::string& text) {
   return found;
 }
 
+/// Names that an anonymous namespace of a source defines: types, constants, and functions with their parameters (overloads live beside each
+/// other), as "name" or "name(parameters)".
+std::vector<std::string> private_names(const std::string& text) {
+  static const std::regex token(
+      R"(\bnamespace\b\s*([\w:]*)\s*\{|\b(?:struct|class|union|enum)\s+(?:class\s+)?(\w+)(?:\s+final)?\s*(?::(?!:)[^;{}()]*)?\{|\n(?:const|constexpr)\s[^;(){}=]*?(\w+)(?:\s*=|\{)|\n[\w:][\w:<>,&* \t]*?[\s&*](\w+\([^{};]*\))(?:\s*noexcept)?\s*\{|\{|\})");
+  enum class Opened { space, hidden_space, other };
+  std::vector<Opened> open;
+  std::vector<std::string> found;
+  const std::string code = bare(text);
+  for (std::sregex_iterator it(code.begin(), code.end(), token), end; it != end; ++it) {
+    const std::string all = it->str();
+    if (!open.empty() && open.back() == Opened::hidden_space)
+      for (int group : {2, 3, 4})
+        if ((*it)[group].matched) found.push_back(std::regex_replace((*it)[group].str(), std::regex("\\s+"), " "));
+    if (all == "}") {
+      if (!open.empty()) open.pop_back();
+    } else if (all.back() == '{') {
+      if (all.compare(0, 9, "namespace") == 0)
+        open.push_back((*it)[1].length() ? Opened::space : Opened::hidden_space);
+      else
+        open.push_back(Opened::other);
+    }
+  }
+  return found;
+}
+
 /// [name] where it is defined, of names that more than one thing has.
 std::map<std::string, std::vector<std::string>> shared_names(const std::map<std::string, std::string>& texts) {
   std::map<std::string, std::vector<std::string>> places, shared;
@@ -104,6 +130,39 @@ TEST_CASE("No two types of the library share a name", "[architecture]") {
     for (const auto& file : files) list += " " + file;
     FAIL_CHECK(name << " is defined in" << list);
   }
+}
+
+// The release build compiles the sources of a module together (CMAKE_UNITY_BUILD), which takes a third of the time.
+TEST_CASE("No two sources of a module give one private name to two things", "[architecture]") {
+  const fs::path root = fs::path(SUNFLECK_SOURCE_DIR) / "src";
+  std::size_t names = 0;
+  for (const auto& module : fs::directory_iterator(root)) {
+    if (!module.is_directory()) continue;
+    std::map<std::string, std::string> first;
+    for (const auto& entry : fs::recursive_directory_iterator(module.path())) {
+      if (entry.path().extension() != ".cpp") continue;
+      std::ifstream in(entry.path());
+      const std::string file = fs::relative(entry.path(), root).string();
+      for (const auto& name : private_names({std::istreambuf_iterator<char>(in), {}})) {
+        ++names;
+        const auto [it, is_new] = first.emplace(name, file);
+        if (!is_new) FAIL_CHECK(name << " is in " << it->second << " and in " << file);
+      }
+    }
+  }
+  REQUIRE(names > 500);
+}
+
+TEST_CASE("Private names are found wherever they are written", "[architecture]") {
+  const auto names = [](const std::string& code) {
+    return private_names("namespace sunfleck {\nnamespace {\n" + code + "\n}\nconstexpr int open = 1;\n}");
+  };
+  REQUIRE(names("constexpr double ring = 1.0, bow = 2.0;") == std::vector<std::string>{"ring"});
+  REQUIRE(names("const std::vector<int> ring{1, 2};") == std::vector<std::string>{"ring"});
+  REQUIRE(names("struct Ring {\n  const int inner = 1;\n};") == std::vector<std::string>{"Ring"});
+  REQUIRE(names("std::string ring(std::string_view text,\n    int n) {\n  const int inner = 1;\n}") ==
+          std::vector<std::string>{"ring(std::string_view text, int n)"});
+  REQUIRE(names("using std::numbers::pi;").empty());
 }
 
 TEST_CASE("Types that share a name are found wherever they are written", "[architecture]") {
