@@ -46,6 +46,10 @@ function(sunfleck_module name)
   add_library(sunfleck_${name} STATIC ${sources})
   target_include_directories(sunfleck_${name} PUBLIC ${PROJECT_SOURCE_DIR}/include PRIVATE ${PROJECT_SOURCE_DIR}/src)
   target_link_libraries(sunfleck_${name} PUBLIC ${M_LINK} PRIVATE ${M_PRIVATE})
+  if(SUNFLECK_INSTALL)  # for the shared library; calls within it are inlined as they are in programs
+    set_target_properties(sunfleck_${name} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+    target_compile_options(sunfleck_${name} PRIVATE -fno-semantic-interposition)
+  endif()
   sunfleck_options(sunfleck_${name})
 endfunction()
 
@@ -57,4 +61,11 @@ function(sunfleck_embed name folder)
                      COMMAND ${CMAKE_COMMAND} -DSOURCE=${folder} -DOUTPUT=${output} -P ${PROJECT_SOURCE_DIR}/cmake/embed_web_files.cmake
                      DEPENDS ${files} ${PROJECT_SOURCE_DIR}/cmake/embed_web_files.cmake VERBATIM)
   target_sources(sunfleck_${name} PRIVATE ${output})
+endfunction()
+
+# sunfleck_leave_out(NAME FILE PATTERN): the module's sources of that pattern are not compiled; src/NAME/absent/FILE is in their place.
+function(sunfleck_leave_out name file pattern)
+  get_target_property(sources sunfleck_${name} SOURCES)
+  list(FILTER sources EXCLUDE REGEX "/src/${name}/${pattern}$")
+  set_property(TARGET sunfleck_${name} PROPERTY SOURCES ${sources} ${PROJECT_SOURCE_DIR}/src/${name}/absent/${file})
 endfunction()

@@ -26,6 +26,10 @@
 #include "cli/standard_streams.hpp"
 #include "cli/terminal_progress.hpp"
 
+#ifndef SUNFLECK_LEFT_OUT
+#define SUNFLECK_LEFT_OUT ""  // or " (without PART, ...)": parts that the build leaves out
+#endif
+
 namespace sunfleck {
 
 namespace {
@@ -63,7 +67,7 @@ std::vector<std::string> option_names(const CLI::App& verb) {
 class Program {
  public:
   Program() {
-    app_.set_version_flag("--version", "sunfleck " + software_version(), "print the version and exit");
+    app_.set_version_flag("--version", "sunfleck " + software_version() + SUNFLECK_LEFT_OUT, "print the version and exit");
     app_.require_subcommand(1);
     app_.get_formatter()->label("SUBCOMMAND", "VERB");
     app_.set_help_flag("-h,--help", "print this help and exit");
