@@ -15,7 +15,7 @@ namespace sunfleck {
 namespace {
 
 constexpr double least_slope_among_copies = 1e-4;  // of rays in periodic scenes
-constexpr double most_cells_wrapped = 1e6;    // that a ray is wrapped through
+constexpr double most_cells_wrapped = 1e6;         // that a ray is wrapped through
 
 }  // namespace
 
@@ -126,7 +126,8 @@ struct CopyRays::Impl {
       if (!segment(in, p, d, skip, range, r)) return {};
       return found(r, p + static_cast<double>(r.ray.tfar) * d, static_cast<double>(r.ray.tfar));
     }
-    if (std::fabs(d.z) < least_slope_among_copies) d = glm::normalize(Vec3{d.x, d.y, d.z < 0 ? -least_slope_among_copies : least_slope_among_copies});
+    if (std::fabs(d.z) < least_slope_among_copies)
+      d = glm::normalize(Vec3{d.x, d.y, d.z < 0 ? -least_slope_among_copies : least_slope_among_copies});
     const double width = scene.periodic->width(), depth = scene.periodic->depth();
     const double slack = 1e-6 * std::max({width, depth, box.size().z});  // level ground is at the very end, in single precision
     const double low = box.low.z - centre.z - slack, high = box.high.z - centre.z + slack;

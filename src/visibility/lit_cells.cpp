@@ -22,12 +22,12 @@ namespace sunfleck {
 
 namespace {
 
-constexpr int tile = 256;                    // lines
-constexpr std::uint32_t chunk_rows = 32;     // triangles that are left out of a tile together
-constexpr std::uint32_t most_count = 65535;  // narrow counts are 16 bits wide and stay at their largest value
-constexpr double most_expected = 32000;      // lines through a cell that narrow counts are trusted with
-constexpr double least_slope_of_lines = 1e-3;         // of lines in periodic scenes
-constexpr double fewest_cell_lines = 1024;        // through a cell of a periodic scene
+constexpr int tile = 256;                      // lines
+constexpr std::uint32_t chunk_rows = 32;       // triangles that are left out of a tile together
+constexpr std::uint32_t most_count = 65535;    // narrow counts are 16 bits wide and stay at their largest value
+constexpr double most_expected = 32000;        // lines through a cell that narrow counts are trusted with
+constexpr double least_slope_of_lines = 1e-3;  // of lines in periodic scenes
+constexpr double fewest_cell_lines = 1024;     // through a cell of a periodic scene
 
 /// Bounding spheres of runs of triangles of a surface.
 struct Chunk {
