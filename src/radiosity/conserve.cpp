@@ -54,15 +54,15 @@ std::vector<double> absorbed_by_parts(const LitElements& lit, const ScatteredLig
 
 }  // namespace
 
-FirstReflection first_reflection(const LineLinks& links, std::size_t columns) {
+FirstReflection first_reflection(const std::array<HalfLight, 2>& along, double area_of_line, std::size_t columns) {
   FirstReflection first{std::vector<double>(columns, 0.0), std::vector<double>(columns, 0.0)};
-  for (const auto& half : links.half) {
+  for (const auto& half : along) {
     for (std::size_t c = 0; c < half.escaped_reflection.size(); ++c) {
-      first.escaped[c] += half.escaped_reflection[c] * links.area_of_line;
-      first.all[c] += half.escaped_reflection[c] * links.area_of_line;
+      first.escaped[c] += half.escaped_reflection[c] * area_of_line;
+      first.all[c] += half.escaped_reflection[c] * area_of_line;
     }
     for (const auto* met : {&half.first_reflection, &half.withheld_reflection})
-      for (std::size_t i = 0; i < met->size(); ++i) first.all[i % columns] += static_cast<double>((*met)[i]) * links.area_of_line;
+      for (std::size_t i = 0; i < met->size(); ++i) first.all[i % columns] += static_cast<double>((*met)[i]) * area_of_line;
   }
   return first;
 }

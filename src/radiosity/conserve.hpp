@@ -13,7 +13,7 @@ struct FirstReflection {
   std::vector<double> all, escaped;
 };
 
-FirstReflection first_reflection(const LineLinks& links, std::size_t columns);
+FirstReflection first_reflection(const std::array<HalfLight, 2>& along, double area_of_line, std::size_t columns);
 
 /// Scattered light of a state and band must be absorbed or escape, all of it. Lines sample the area of what scatters, and cells share it
 /// out by their true areas, so sums differ by the sampling: both the light gathered and that which escapes are multiplied by one factor,

@@ -24,22 +24,94 @@ namespace {
 
 constexpr std::uint64_t line_stream = 0x9fb21c651e98df25ULL;
 
-/// What of the skies comes along the lines of a direction, from above and from below, per line of mean area.
-struct LineSky {
-  float weight = 1.0f;  ///< area that a line stands for, relative to the mean
-  std::vector<float> above, below;
+/// Collects DirectLines.
+class LineRecord {
+ public:
+  LineRecord(const Elements& e, std::uint32_t directions)
+      : lines(e.surface.cells(), 0.0f),
+        met_(std::max(4 * e.size(), 2 * e.surface.cells())),
+        withheld_(std::max(2 * e.size(), 2 * e.surface.cells())),
+        open_(std::max<std::size_t>(2 * directions, 2 * e.surface.cells())),
+        escapes_(2 * e.surface.cells(), 0.0f) {}
+
+  void add(const DirectionLines& d, std::uint32_t direction, float weight) {
+    const auto see_out = [&](std::uint32_t from, std::uint32_t cell_side, std::uint32_t sense) {
+      open_.add_end(cell_side, 2 * direction + sense);
+      if (from & enclosed_bit)
+        withhold(from, cell_side);
+      else
+        escapes_[cell_side] += 1.0f;
+    };
+    const auto meet = [&](std::uint32_t row, std::uint32_t from, std::uint32_t cell_side) {
+      if (from & enclosed_bit)
+        withhold(from, cell_side);
+      else if (row & enclosed_bit)
+        enclosed_.push_back({row, cell_side});
+      else
+        met_.add_end(row, cell_side);
+    };
+    for (std::size_t k = 0, n = d.side.size(); k < n; ++k) {
+      const std::uint32_t down = d.side[k] ^ 1u;
+      lines[d.cell_side[k] >> 1] += weight;
+      if (d.link[k] == HitLink::lowest) {
+        see_out(down, d.cell_side[k] ^ 1u, 1);
+      } else {
+        meet(d.side[k - 1], down, d.cell_side[k] ^ 1u);
+        meet(down, d.side[k - 1], d.cell_side[k - 1]);
+      }
+      if (k + 1 == n || d.link[k + 1] == HitLink::lowest) see_out(d.side[k], d.cell_side[k], 0);
+    }
+    for (const auto& o : d.outside) {
+      const std::uint32_t up = 2 * o.cell + (o.front_up ? 0 : 1);
+      lines[o.cell] += weight * o.lines;
+      outside_.push_back({up, 2 * direction, o.lines});
+      outside_.push_back({up ^ 1u, 2 * direction + 1, o.lines});
+      escapes_[up] += o.lines;
+      escapes_[up ^ 1u] += o.lines;
+    }
+  }
+
+  DirectLines finish(std::size_t sides, std::size_t element_sides, const auto& part_side) {
+    for (const auto& r : enclosed_) met_.add_end(part_side(r.low), r.high);
+    DirectLines out;
+    std::vector<float> unused(std::max(sides, escapes_.size()), 0.0f);
+    out.met = met_.finish(sides, unused);
+    if (any_withheld_) out.withheld = withheld_.finish(element_sides, unused);
+    out.open = open_.finish(escapes_.size(), unused);
+    out.escapes = std::move(escapes_);
+    out.lines = std::move(lines);
+    out.outside = std::move(outside_);
+    return out;
+  }
+
+  std::vector<float> lines;  ///< as DirectLines
+
+ private:
+  void withhold(std::uint32_t side, std::uint32_t cell_side) {
+    withheld_.add_end(side & ~enclosed_bit, cell_side);
+    any_withheld_ = true;
+  }
+
+  NearBuilder met_, withheld_, open_;
+  std::vector<float> escapes_;
+  std::vector<SidePair> enclosed_;  ///< row, and side of the cell that is met
+  std::vector<DirectLines::Outside> outside_;
+  bool any_withheld_ = false;
 };
 
 /// Collects one half of the links while directions come in, bin by bin.
 class HalfBuilder {
  public:
-  HalfBuilder(const Elements& elements, const ClusterTree* tree, const SunReflection& sun, std::size_t skies, bool count_cells)
+  /// `recorded_directions`: 0 = lines are not recorded.
+  HalfBuilder(const Elements& elements, const ClusterTree* tree, const SunReflection& sun, std::size_t skies, bool count_cells,
+              std::uint32_t recorded_directions)
       : e_(elements), tree_(tree), sun_(sun), near_(4 * elements.size()) {
     const std::size_t sides = 2 * e_.size();
     open_up_.assign(sides, 0.0f);
     open_down_.assign(sides, 0.0f);
-    if (count_cells) sky_ = SkySums(e_.surface.cells(), skies);
-    if (!sun_.exitance.empty()) {
+    if (recorded_directions > 0) record_.emplace(e_, recorded_directions);
+    if (count_cells && !record_) sky_ = SkySums(e_.surface.cells(), skies);
+    if (!sun_.exitance.empty() && !record_) {
       reflection_.assign(sides * sun_.columns, 0.0f);
       escaped_.assign(sun_.columns, 0.0);
     }
@@ -53,12 +125,15 @@ class HalfBuilder {
   }
 
   /// Directions of one bin that belong to this half, in order.
-  void add_bin(std::uint32_t bin, const std::vector<const DirectionLines*>& lines, const std::vector<const LineSky*>& skies) {
+  void add_bin(std::uint32_t bin, const std::vector<const DirectionLines*>& lines, const std::vector<std::uint32_t>& directions,
+               const std::vector<LineSky>& skies) {
     std::vector<FarPair> far;
     for (std::size_t i = 0; i < lines.size(); ++i) {
       add_hits(*lines[i]);
-      if (!sky_.empty()) add_sky(*lines[i], *skies[i]);
-      if (sun_.columns == 2)
+      if (!sky_.empty()) add_sky(*lines[i], skies[directions[i]]);
+      if (record_)
+        record_->add(*lines[i], directions[i], skies[directions[i]].weight);
+      else if (sun_.columns == 2)
         add_reflections<2>(*lines[i]);
       else if (!sun_.exitance.empty())
         add_reflections<0>(*lines[i]);
@@ -68,9 +143,9 @@ class HalfBuilder {
   }
 
   /// Needs skies or `count_cells`.
-  float lines_of_cell(std::size_t cell) const { return sky_.all(cell); }
+  float lines_of_cell(std::size_t cell) const { return record_ ? record_->lines[cell] : sky_.all(cell); }
 
-  HalfLinks finish(std::size_t sides, const std::vector<std::uint32_t>& enclosed_part) {
+  HalfLinks finish(std::size_t sides, const std::vector<std::uint32_t>& enclosed_part, HalfLight& light, DirectLines& direct) {
     HalfLinks half;
     const auto part_side = [&](std::uint32_t s) { return s & enclosed_bit ? 2 * enclosed_part[(s & ~enclosed_bit) >> 1] + (s & 1u) : s; };
     half.open_up = std::move(open_up_);
@@ -79,14 +154,15 @@ class HalfBuilder {
     half.open_down.resize(sides, 0.0f);
     for (const auto s : enclosed_up_) half.open_up[part_side(s)] += 1.0f;
     for (const auto s : enclosed_down_) half.open_down[part_side(s)] += 1.0f;
-    half.sky = std::move(sky_);
-    half.first_reflection = std::move(reflection_);
-    half.escaped_reflection = std::move(escaped_);
-    half.withheld_reflection = std::move(withheld_);
-    if (!half.first_reflection.empty()) half.first_reflection.resize(sides * sun_.columns, 0.0f);
+    light.sky = std::move(sky_);
+    light.first_reflection = std::move(reflection_);
+    light.escaped_reflection = std::move(escaped_);
+    light.withheld_reflection = std::move(withheld_);
+    if (!light.first_reflection.empty()) light.first_reflection.resize(sides * sun_.columns, 0.0f);
     for (const auto& r : enclosed_reflections_)
       for (std::size_t c = 0; c < sun_.columns; ++c)
-        half.first_reflection[part_side(r.low) * sun_.columns + c] += sun_.exitance[std::size_t{r.high} * sun_.columns + c];
+        light.first_reflection[part_side(r.low) * sun_.columns + c] += sun_.exitance[std::size_t{r.high} * sun_.columns + c];
+    if (record_) direct = record_->finish(sides, 2 * e_.size(), part_side);
     half.lines.resize(sides);
     for (std::size_t i = 0; i < sides; ++i) half.lines[i] = half.open_up[i] + half.open_down[i];
     for (const auto& p : enclosed_pairs_) near_.add(part_side(p.low), part_side(p.high));
@@ -282,6 +358,7 @@ class HalfBuilder {
   const Elements& e_;
   const ClusterTree* tree_;
   const SunReflection& sun_;
+  std::optional<LineRecord> record_;
   std::vector<float> reflection_, withheld_;
   std::vector<double> escaped_;
   SkySums sky_;
@@ -319,6 +396,11 @@ std::vector<LineSky> skies_along(const std::vector<Projection>& projection, cons
   return out;
 }
 
+/// That a line stands for [m^2].
+double mean_line_area(const LineLinks& links, std::size_t directions) {
+  return links.area_of_line * static_cast<double>(directions) / 2.0;
+}
+
 /// Do at least 5 % of the lines between elements run far?
 bool clusters_pay(const std::vector<DirectionLines>& found) {
   std::size_t near = 0, far = 0;
@@ -331,7 +413,7 @@ bool clusters_pay(const std::vector<DirectionLines>& found) {
 
 std::size_t bytes_of_half(const HalfLinks& h) {
   return h.near.bytes() + bytes_of(h.far.of_side) + bytes_of(h.far.through) + bytes_of(h.far.linked) + bytes_of(h.far.first_link) +
-         bytes_of(h.far.links) + bytes_of(h.lines) + bytes_of(h.open_up) + bytes_of(h.open_down) + bytes_of(h.first_reflection);
+         bytes_of(h.far.links) + bytes_of(h.lines) + bytes_of(h.open_up) + bytes_of(h.open_down);
 }
 
 }  // namespace
@@ -357,7 +439,9 @@ std::uint64_t LineLinks::link_count() const {
 }
 
 std::size_t LineLinks::bytes() const {
-  return bytes_of_half(half[0]) + bytes_of_half(half[1]) + bytes_of(whole) + bytes_of(enclosed_part) + bytes_of(enclosed);
+  std::size_t total = bytes_of(whole) + bytes_of(enclosed_part) + bytes_of(enclosed) + bytes_of(projection);
+  for (std::size_t h = 0; h < 2; ++h) total += bytes_of_half(half[h]) + bytes_of(light[h].first_reflection) + direct[h].bytes();
+  return total;
 }
 
 double line_batch(std::size_t elements, const RadiosityDensity& density) {
@@ -366,7 +450,7 @@ double line_batch(std::size_t elements, const RadiosityDensity& density) {
 }
 
 LineLinks line_links(const Elements& e, const ClusterTree* tree, const SunReflection& sun, const std::vector<const Sky*>& skies,
-                     const RadiositySettings& settings, Progress& progress) {
+                     const RadiositySettings& settings, bool recorded, Progress& progress) {
   const std::uint32_t directions = settings.density.directions;
   const double pitch = line_pitch(e, settings.density);
   LineLinks links;
@@ -385,7 +469,7 @@ LineLinks line_links(const Elements& e, const ClusterTree* tree, const SunReflec
     // a side of area A meets A D / (2 line area) lines
     links.area_of_line += 2.0 * projection[d].line_area / (static_cast<double>(directions) * directions);
   }
-  const std::vector<LineSky> line_sky = skies_along(projection, skies, links.area_of_line * directions / 2.0);
+  const std::vector<LineSky> line_sky = skies_along(projection, skies, mean_line_area(links, directions));
   std::uint32_t done = 0;
   // a batch of directions, mostly of one bin, keeps the threads busy; its hits wait in memory to be sorted into links
   std::vector<std::uint32_t> queue;
@@ -416,20 +500,21 @@ LineLinks line_links(const Elements& e, const ClusterTree* tree, const SunReflec
         }
       }
       links.clustered = tree != nullptr;
-      for (auto& b : builder) b.emplace(e, tree, sun, skies.size(), !skies.empty() || !collector.inside().empty());
+      for (auto& b : builder)
+        b.emplace(e, tree, sun, skies.size(), !skies.empty() || !collector.inside().empty(), recorded ? directions : 0);
     }
     for (const auto& f : found) links.fragments += f.side.size();
     const auto add = [&](std::uint32_t h) {
       for (std::size_t i = 0; i < batch.size();) {
         const auto bin = bin_of(projection[batch[i]].direction);
         std::vector<const DirectionLines*> mine;
-        std::vector<const LineSky*> mine_sky;
+        std::vector<std::uint32_t> mine_direction;
         for (; i < batch.size() && bin_of(projection[batch[i]].direction) == bin; ++i)
           if (batch[i] % 2 == h) {
             mine.push_back(&found[i]);
-            mine_sky.push_back(&line_sky[batch[i]]);
+            mine_direction.push_back(batch[i]);
           }
-        builder[h]->add_bin(bin, mine, mine_sky);
+        builder[h]->add_bin(bin, mine, mine_direction, line_sky);
       }
     };
     tbb::parallel_invoke([&] { add(0); }, [&] { add(1); });
@@ -455,10 +540,16 @@ LineLinks line_links(const Elements& e, const ClusterTree* tree, const SunReflec
     }
   }
   for (std::size_t h = 0; h < 2; ++h) {
-    links.half[h] = builder[h]->finish(links.sides(), links.enclosed_part);
+    links.half[h] = builder[h]->finish(links.sides(), links.enclosed_part, links.light[h], links.direct[h]);
     builder[h].reset();
   }
+  if (recorded) links.projection = std::move(projection);
   return links;
+}
+
+std::array<HalfLight, 2> light_along(const LineLinks& links, const SunReflection& sun, const std::vector<const Sky*>& skies) {
+  const auto line_sky = skies_along(links.projection, skies, mean_line_area(links, links.projection.size()));
+  return {links.direct[0].light(sun, line_sky, skies.size()), links.direct[1].light(sun, line_sky, skies.size())};
 }
 
 }  // namespace sunfleck

@@ -7,9 +7,10 @@
 
 #include <sunfleck/core/progress.hpp>
 #include <sunfleck/radiosity/elements.hpp>
+#include <sunfleck/visibility/projection.hpp>
 
 #include "cluster_tree.hpp"
-#include "direct_light.hpp"
+#include "direct_lines.hpp"
 #include "near_links.hpp"
 
 namespace sunfleck {
@@ -44,19 +45,6 @@ struct HalfLinks {
   NearLinks near;
   FarField far;
   std::vector<float> lines, open_up, open_down;  ///< [sides]
-  SkySums sky;                                   ///< of the cells, on the same lines
-  /// The sun's light after its first reflection, summed over the lines of each side: [sides][columns] [W m^-2 lines]. Taken cell by
-  /// cell, where the elements only know a mean: sunlit parts shine more than shaded ones, and are seen more from outside.
-  std::vector<float> first_reflection;
-  std::vector<float>
-      withheld_reflection;  ///< [sides of elements][columns] the same, summed over lines that find a side enclosed; empty if none
-  std::vector<double> escaped_reflection;  ///< [columns] the same, summed over the lines on which it leaves the scene
-};
-
-/// Sunlight as it leaves each side of each cell [W m^-2].
-struct SunReflection {
-  std::vector<float> exitance;  ///< [2 * cells][columns]; empty without sun
-  std::size_t columns = 0;
 };
 
 /// Rows are sides, 2 * part + (0 front, 1 back). Parts are the elements, followed by the *enclosed parts* of those elements that stick in
@@ -64,6 +52,9 @@ struct SunReflection {
 /// element that kept it would shine inside the organ that hides it; stems of a real plant then absorbed 20 % too much.
 struct LineLinks {
   std::array<HalfLinks, 2> half;
+  std::array<HalfLight, 2> light;            ///< what the lines brought, unless they are recorded
+  std::array<DirectLines, 2> direct;         ///< the lines themselves, where they are recorded
+  std::vector<Projection> projection;        ///< [directions] the same
   std::vector<std::uint32_t> whole;          ///< [parts] the element that a part belongs to; part i < elements belongs to element i
   std::vector<std::uint32_t> enclosed_part;  ///< [elements] its enclosed part, or none; empty where no element has one
   std::vector<float> enclosed;               ///< [cells] fraction of a cell that is enclosed; empty where no element has an enclosed part
@@ -73,6 +64,7 @@ struct LineLinks {
   static constexpr std::uint32_t none = 0xffffffffu;
 
   std::size_t sides() const { return 2 * whole.size(); }
+  bool recorded() const { return !projection.empty(); }
   std::uint64_t link_count() const;
   std::size_t bytes() const;
 };
@@ -88,8 +80,12 @@ void release_pages(const Elements& elements);
 /// an estimate of how much the radiosity met, relative to the mean, changes when A sees B from elsewhere within A: the light of dark
 /// things is scattered little, and a look from far spreads over what lies around anyway. No such pair: a link between the elements.
 /// Method flat has no clusters; a scene in which hardly a line runs far makes no use of them.
-/// The lines also tell what of the `skies` each cell sees.
+/// The lines also tell what of the `skies` each cell sees, and bring the sun's first reflection: at once, or, where lines are `recorded`,
+/// whenever they are asked (light_along()).
 LineLinks line_links(const Elements& elements, const ClusterTree* tree, const SunReflection& sun, const std::vector<const Sky*>& skies,
-                     const RadiositySettings& settings, Progress& progress);
+                     const RadiositySettings& settings, bool recorded, Progress& progress);
+
+/// What recorded lines bring.
+std::array<HalfLight, 2> light_along(const LineLinks& links, const SunReflection& sun, const std::vector<const Sky*>& skies);
 
 }  // namespace sunfleck

@@ -34,7 +34,7 @@ void source_of_cells(const LitElements& lit, std::size_t element, std::size_t ro
 
 }  // namespace
 
-PartSources part_sources(const LitElements& lit, const LineLinks& links, ScatteredLight& light) {
+PartSources part_sources(const LitElements& lit, const LineLinks& links, const std::array<HalfLight, 2>& along, ScatteredLight& light) {
   const auto& e = lit.elements;
   const std::size_t sides = links.sides(), columns = lit.columns();
   PartSources out;
@@ -63,12 +63,12 @@ PartSources part_sources(const LitElements& lit, const LineLinks& links, Scatter
         for (std::size_t h = 0; h < 2; ++h) {
           const auto& half = links.half[h];
           double lines = 0;
-          for (std::uint32_t k = e.first_cell[i]; k < e.first_cell[i + 1]; ++k) lines += half.sky.all(e.cells[k]);
+          for (std::uint32_t k = e.first_cell[i]; k < e.first_cell[i + 1]; ++k) lines += along[h].sky.all(e.cells[k]);
           if (inside != LineLinks::none && lines > 0)
             lines *= half.lines[row] / (half.lines[row] + half.lines[2 * std::size_t{inside} + row % 2]);
           float* source = out.irradiance[h].data() + row * columns;
           if (lines > 0.5)
-            source_of_lines(lit, half.sky, i, row, lines, out.rest[h][row], source);
+            source_of_lines(lit, along[h].sky, i, row, lines, out.rest[h][row], source);
           else {
             out.rest[h][row] = light.mean_rest[row];
             source_of_cells(lit, i, row, open, source);

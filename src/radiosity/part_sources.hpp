@@ -18,7 +18,7 @@ struct PartSources {
 /// Fills `area` and `mean_rest` of `light` on the way. Each half has figures of its own, as the product of two from the same lines would be
 /// biased; a side that no line of a half meets takes the area means over its cells, which come from both. No direct light reaches enclosed
 /// parts.
-PartSources part_sources(const LitElements& lit, const LineLinks& links, ScatteredLight& light);
+PartSources part_sources(const LitElements& lit, const LineLinks& links, const std::array<HalfLight, 2>& along, ScatteredLight& light);
 
 /// Light of sun and lamps after reflection and transmission on each cell.
 SunReflection sun_reflection(const LitElements& lit);

@@ -103,7 +103,7 @@ class Planner {
     RadiositySettings settings = settings_;
     settings.density.fewest_hits *= static_cast<double>(directions) / settings.density.directions;  // as many in each direction
     settings.density.directions = directions;
-    const auto links = line_links(elements_, tree, {}, {}, settings, progress_);
+    const auto links = line_links(elements_, tree, {}, {}, settings, false, progress_);
     Pilot out;
     out.fragments = static_cast<double>(links.fragments);
     out.clustered = links.clustered;

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
+#include <memory>
 
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
@@ -27,8 +27,8 @@ double largest_albedo(const FacetScene& facets) {
 }
 
 /// What enclosed parts withhold of the sun's first reflection, spread over the rest of their elements as exitance; empty if nothing.
-Field returned_reflection(const LineLinks& links, std::size_t columns) {
-  const auto &a = links.half[0].withheld_reflection, &b = links.half[1].withheld_reflection;
+Field returned_reflection(const LineLinks& links, const std::array<HalfLight, 2>& along, std::size_t columns) {
+  const auto &a = along[0].withheld_reflection, &b = along[1].withheld_reflection;
   if (a.empty() && b.empty()) return {};
   Field exitance(links.sides() * columns, 0.0f);
   for (std::size_t i = 0; i < std::max(a.size(), b.size()); ++i) {
@@ -41,8 +41,13 @@ Field returned_reflection(const LineLinks& links, std::size_t columns) {
 /// The exchange of light between parts along the two halves of the lines.
 class Exchange {
  public:
-  Exchange(const LitElements& lit, const LineLinks& links, const ClusterTree* tree, const ScatteredLight& light, PartSources sources)
-      : columns_(lit.columns()), light_(light), sources_(std::move(sources)), reflection_(lit.facets, materials(lit, links), lit.states) {
+  Exchange(const LitElements& lit, const LineLinks& links, const std::array<HalfLight, 2>& along, const ClusterTree* tree,
+           const ScatteredLight& light, PartSources sources)
+      : columns_(lit.columns()),
+        along_(along),
+        light_(light),
+        sources_(std::move(sources)),
+        reflection_(lit.facets, materials(lit, links), lit.states) {
     const std::size_t sides = links.sides();
     const bool sky_known = !lit.direct.sky_seen.empty();
     bool sky_below = false;
@@ -59,7 +64,7 @@ class Exchange {
       }
       gather_.emplace_back(half, tree, sky_lines, columns_, cluster_fields_);
     }
-    returned_ = returned_reflection(links, columns_);
+    returned_ = returned_reflection(links, along_, columns_);
     radiosity_.resize(sides * columns_);
     weight_.resize(sides);
     for (std::size_t i = 0; i < sides; ++i) weight_[i] = light.area[i / 2];
@@ -76,7 +81,7 @@ class Exchange {
         std::fill(gathered.begin(), gathered.end(), 0.0f);
       else
         gather_[h].gather(returned_.data(), gathered.data());
-      gather_[h].add_first_reflection(1.0f, gathered.data());
+      gather_[h].add_first_reflection(1.0f, along_[h], gathered.data());
       times_rest(h, gathered);
       add(gathered, source[h]);
     }
@@ -107,7 +112,7 @@ class Exchange {
       for (std::size_t i = 0; i < returned_.size(); ++i) b[i] += returned_[i];
       gather_[h].gather(b, part.data());
       for (std::size_t i = 0; i < gathered.size(); ++i) gathered[i] += 0.5f * part[i];
-      gather_[h].add_first_reflection(0.5f, gathered.data());
+      gather_[h].add_first_reflection(0.5f, along_[h], gathered.data());
       for (std::size_t i = 0; i < weight_.size(); ++i)
         for (std::size_t c = 0; c < columns_; ++c)
           escaped[c] += 0.5 * static_cast<double>(light_.area[i / 2]) * b[i * columns_ + c] * escape_[h][i];
@@ -142,6 +147,7 @@ class Exchange {
   }
 
   std::size_t columns_;
+  const std::array<HalfLight, 2>& along_;
   const ScatteredLight& light_;
   PartSources sources_;
   Reflection reflection_;
@@ -152,17 +158,22 @@ class Exchange {
   Field radiosity_, returned_, irradiance_[2];
 };
 
-/// Traces lines; the sky's light on cells, and what is enclosed, come with them.
-LineLinks trace(LitElements& lit, std::optional<ClusterTree>& tree, const RadiositySettings& settings, ScatteredLight& light,
-                Progress& progress) {
-  if (settings.method == RadiosityMethod::clustering) tree = make_cluster_tree(lit.facets, lit.elements);
+/// The lines, traced or kept from an earlier solve.
+std::shared_ptr<StoredTransport> trace(LitElements& lit, const RadiositySettings& settings, const SunReflection& sun,
+                                             const std::vector<const Sky*>& skies, bool recorded, Progress& progress) {
+  auto made = std::make_shared<StoredTransport>();
+  if (settings.method == RadiosityMethod::clustering) made->tree = make_cluster_tree(lit.facets, lit.elements);
   lit.elements.tree = {};
-  LineLinks links =
-      line_links(lit.elements, tree ? &*tree : nullptr, sun_reflection(lit), light_sources(lit.scene.states).skies, settings, progress);
-  if (!links.clustered) tree.reset();
-  if (links.half[0].sky.skies() > 0) {
-    SkySums sums = links.half[0].sky;
-    sums.add(links.half[1].sky);
+  made->links = line_links(lit.elements, made->tree ? &*made->tree : nullptr, sun, skies, settings, recorded, progress);
+  if (!made->links.clustered) made->tree.reset();
+  return made;
+}
+
+/// The sky's light on cells, and what is enclosed, come with the lines.
+void take_along(LitElements& lit, const LineLinks& links, const std::array<HalfLight, 2>& along, ScatteredLight& light) {
+  if (along[0].sky.skies() > 0) {
+    SkySums sums = along[0].sky;
+    sums.add(along[1].sky);
     sky_from_lines(lit.facets, lit.elements, sums, links.area_of_line, lit.direct);
   }
   light.enclosed_part = links.enclosed_part;
@@ -171,18 +182,37 @@ LineLinks trace(LitElements& lit, std::optional<ClusterTree>& tree, const Radios
   // what sees the sky is not enclosed: other lines found the two fractions, and together they must not exceed the hemisphere
   for (std::size_t c = 0; c < light.enclosed.size(); ++c)
     light.enclosed[c] = std::min({light.enclosed[c], lit.rest(2 * c), lit.rest(2 * c + 1)});
-  return links;
 }
 
 }  // namespace
 
-ScatteredLight solve_scattering(LitElements& lit, const RadiositySettings& settings, SolveReport& report, Progress& progress) {
+ScatteredLight solve_scattering(LitElements& lit, const RadiositySettings& settings, const KeptTransport& kept, SolveReport& report,
+                                Progress& progress) {
   Stopwatch watch;
   ScatteredLight light;
-  std::optional<ClusterTree> tree;
-  LineLinks links = trace(lit, tree, settings, light, progress);
-  PartSources sources = part_sources(lit, links, light);
-  for (auto& half : links.half) half.sky = {};
+  const SunReflection sun = sun_reflection(lit);
+  const auto skies = light_sources(lit.scene.states).skies;
+  auto transport = kept.found;
+  std::array<HalfLight, 2> along;
+  std::shared_ptr<StoredTransport> made;
+  if (!transport) {
+    const bool recorded = kept.store && kept.store->entries().has_room(lit.elements.size(), settings.density);
+    made = trace(lit, settings, sun, skies, recorded, progress);
+    if (recorded) {
+      made->elements = lit.elements;
+      made->seconds = kept.seconds + watch.seconds();
+      kept.store->entries().keep(kept.key, made);
+    } else {
+      along = std::move(made->links.light);
+    }
+    transport = made;
+  }
+  const LineLinks& links = transport->links;
+  const auto& tree = transport->tree;
+  if (links.recorded()) along = light_along(links, sun, skies);
+  take_along(lit, links, along, light);
+  PartSources sources = part_sources(lit, links, along, light);
+  for (auto& half : along) half.sky = {};
   release_pages(lit.elements);
   add_seconds(report.timings, "lines", watch.seconds());
   report.memory.emplace_back("direct", lit.direct.bytes());
@@ -194,8 +224,9 @@ ScatteredLight solve_scattering(LitElements& lit, const RadiositySettings& setti
   progress.line(fmt::format("{} elements, {} clusters, {} links", lit.elements.size(), tree ? tree->size() : 0, links.link_count()));
 
   watch = {};
-  Exchange exchange(lit, links, tree ? &*tree : nullptr, light, std::move(sources));
-  for (auto& half : links.half) half.lines = half.open_up = half.open_down = {};
+  Exchange exchange(lit, links, along, tree ? &*tree : nullptr, light, std::move(sources));
+  if (!links.recorded())
+    for (auto& half : made->links.half) half.lines = half.open_up = half.open_down = {};
   const double tolerance = settings.tolerance > 0 ? settings.tolerance : settings.density.tolerance;
   const auto result = exchange.iterate(tolerance, largest_albedo(lit.facets), progress);
   for (std::size_t k = 0; k < result.residuals.size(); ++k)
@@ -209,7 +240,7 @@ ScatteredLight solve_scattering(LitElements& lit, const RadiositySettings& setti
   std::vector<double> escaped(columns, 0.0);
   exchange.gather_solution(light.gathered, escaped);
   for (std::size_t c = 0; c < columns; ++c) report.balance[c / lit.bands][c % lit.bands].escaped += escaped[c];
-  const double missed = conserve(lit, first_reflection(links, columns), light, report.balance);
+  const double missed = conserve(lit, first_reflection(along, links.area_of_line, columns), light, report.balance);
   report.memory.emplace_back("fields", exchange.bytes(result.fields));
   add_seconds(report.timings, "iteration", watch.seconds());
   progress.line(fmt::format("{} applications of the operator, residual {:.1e}", result.residuals.size(), result.residuals.back()));

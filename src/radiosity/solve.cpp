@@ -7,6 +7,7 @@
 #include <sunfleck/core/error.hpp>
 #include <sunfleck/core/memory.hpp>
 #include <sunfleck/radiosity/sensor_gather.hpp>
+#include <sunfleck/scene/content.hpp>
 #include <sunfleck/visibility/endless_light.hpp>
 
 #include "light_rows.hpp"
@@ -17,6 +18,12 @@
 namespace sunfleck {
 
 namespace {
+
+void put_density(ContentKey& key, const RadiosityDensity& d) {
+  key.put(d.directions), key.put(d.lines_per_element), key.put(d.elements_per_organ), key.put(d.sky_directions);
+  key.put(d.sky_lines_per_organ), key.put(d.sun_samples), key.put(d.sun_lines_per_organ), key.put(d.link_error), key.put(d.tolerance);
+  key.put(d.fewest_hits), key.put(d.fewest_organs), key.put(d.least_unevenness);
+}
 
 class RadiositySolver {
  public:
@@ -38,9 +45,11 @@ class RadiositySolver {
       return std::move(report_);
     }
     Stopwatch watch;
-    lit_.elements = make_elements(scene_, facets_, settings_);
+    if (scatter) look_up_transport();
+    lit_.elements = kept_.found ? kept_.found->elements : make_elements(scene_, facets_, settings_);
     release_pages(lit_.elements);
     timed("elements", watch);
+    kept_.seconds = watch.seconds();
     report_.counts.emplace_back("elements", lit_.elements.size());
     report_.counts.emplace_back("cells", lit_.elements.surface.cells());
     report_.memory.emplace_back("elements", lit_.elements.bytes());
@@ -49,7 +58,7 @@ class RadiositySolver {
     if (!lamps_.empty() && scatter) check_lamplight_ends(scene_, *rays_);
     if (!lamps_.empty()) lamps();
     if (scatter)
-      scattered_ = solve_scattering(lit_, settings_, report_, progress_);
+      scattered_ = solve_scattering(lit_, settings_, kept_, report_, progress_);
     else {
       report_.memory.emplace_back("direct", lit_.direct.bytes());
       if (settings_.method != RadiosityMethod::direct) report_.convergence.push_back({0, 0, 0.0, 0, 0.0});  // all is black: E = E0
@@ -68,6 +77,16 @@ class RadiositySolver {
 
  private:
   void timed(const char* phase, const Stopwatch& watch) { add_seconds(report_.timings, phase, watch.seconds()); }
+
+  void look_up_transport() {
+    kept_.store = settings_.store;
+    if (!kept_.store) return;
+    ContentKey key("transport");
+    key.put(settings_.geometry), key.put(settings_.method), key.put(settings_.seed);
+    put_density(key, settings_.density);
+    kept_.key = key.hex();
+    kept_.found = kept_.store->entries().find(kept_.key);
+  }
 
   /// The tree of rays that lamps and sensors need, and nothing else does.
   void trace_rays() {
@@ -124,6 +143,7 @@ class RadiositySolver {
   IrradianceSink& sink_;
   Progress& progress_;
   LitElements lit_;
+  KeptTransport kept_;
   ScatteredLight scattered_;
   const LampLight lamps_;
   std::optional<RayScene> rays_;

@@ -96,24 +96,27 @@ struct ChannelLines {
   }
 };
 
-/// Rows [begin, end) of near links. Columns = 0: their number is only known at run time.
+/// Rows [begin, end) of near links, columns [first, first + Columns) of n.
 template <std::size_t Columns>
-void near_rows(const NearLinks& near, const float* b, float* s, std::size_t begin, std::size_t end, std::size_t run_time_columns) {
-  const std::size_t n = Columns ? Columns : run_time_columns;
+void near_rows(const NearLinks& near, const float* b, float* s, std::size_t begin, std::size_t end, std::size_t n, std::size_t first = 0) {
   for (std::size_t i = begin; i < end; ++i) {
-    float* to = s + i * n;
-    float sum[Columns ? Columns : 1] = {};
-    float* total = Columns ? sum : to;
-    if (!Columns)
-      for (std::size_t c = 0; c < n; ++c) total[c] = 0.0f;
+    float sum[Columns] = {};
     near.for_row(i, [&](std::uint32_t column, std::uint32_t lines) {
-      const float* from = b + std::size_t{column} * n;
+      const float* from = b + std::size_t{column} * n + first;
       const auto count = static_cast<float>(lines);
-      for (std::size_t c = 0; c < n; ++c) total[c] += count * from[c];
+      for (std::size_t c = 0; c < Columns; ++c) sum[c] += count * from[c];
     });
-    if (Columns)
-      for (std::size_t c = 0; c < n; ++c) to[c] = total[c];
+    float* to = s + i * n + first;
+    for (std::size_t c = 0; c < Columns; ++c) to[c] = sum[c];
   }
+}
+
+/// Any number of columns, as many together as stay in a processor's registers.
+void near_rows(const NearLinks& near, const float* b, float* s, std::size_t begin, std::size_t end, std::size_t n) {
+  std::size_t c = 0;
+  for (; c + 16 <= n; c += 16) near_rows<16>(near, b, s, begin, end, n, c);
+  for (; c + 4 <= n; c += 4) near_rows<4>(near, b, s, begin, end, n, c);
+  for (; c < n; ++c) near_rows<1>(near, b, s, begin, end, n, c);
 }
 
 }  // namespace
@@ -141,7 +144,7 @@ void Gather::gather(const float* b, float* s) const {
         near_rows<4>(half_.near, b, s, range.begin(), range.end(), n);
         break;
       default:
-        near_rows<0>(half_.near, b, s, range.begin(), range.end(), n);
+        near_rows(half_.near, b, s, range.begin(), range.end(), n);
     }
     for (std::size_t i = range.begin(); i < range.end(); ++i) {
       float* to = s + i * n;
@@ -158,8 +161,8 @@ void Gather::gather(const float* b, float* s) const {
       for (std::size_t c = 0; c < n; ++c) s[i * n + c] = s[std::size_t{donor_[i]} * n + c];
 }
 
-void Gather::add_first_reflection(float factor, float* s) const {
-  const auto& reflection = half_.first_reflection;
+void Gather::add_first_reflection(float factor, const HalfLight& light, float* s) const {
+  const auto& reflection = light.first_reflection;
   if (reflection.empty()) return;
   for (std::size_t i = 0; i < inverse_.size(); ++i) {
     const std::size_t row = donor_[i];

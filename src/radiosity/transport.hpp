@@ -48,7 +48,7 @@ class Gather {
   Gather(const HalfLinks& half, const ClusterTree* tree, const std::vector<float>& sky_lines, std::size_t columns, ClusterFields& fields);
   void gather(const float* radiosity, float* gathered) const;
   /// Adds factor x the sun's light after its first reflection, gathered along the same lines.
-  void add_first_reflection(float factor, float* gathered) const;
+  void add_first_reflection(float factor, const HalfLight& light, float* gathered) const;
   std::size_t bytes() const;
 
  private:

@@ -3,14 +3,16 @@
 #include <optional>
 
 #include <sunfleck/instantiation/operator_store.hpp>
+#include <sunfleck/radiosity/transport_store.hpp>
 #include <sunfleck/scene/content.hpp>
 
 namespace sunfleck {
 
 struct Session::Impl {
-  explicit Impl(const SessionSettings& settings) : operators(settings.most_bytes, settings.folder) {}
+  explicit Impl(const SessionSettings& settings) : operators(settings.most_bytes, settings.folder), transports(settings.most_bytes) {}
 
   OperatorStore operators;
+  TransportStore transports;
   std::string geometry, whole;  ///< keys of the last scene
   std::optional<Solution> last;
   double last_seconds = 0;
@@ -53,16 +55,22 @@ Solution Session::solve(const Scene& scene, Progress& progress, bool facets) {
     return *s.last;
   }
   s.operators.start();
+  s.transports.start();
   const Stopwatch watch;
   LightInMemory light(facets);
   SolveCaller caller;
   caller.operators = &s.operators;
+  caller.transports = &s.transports;
+  caller.geometry = geometry;
   Solution solution{sunfleck::solve(scene, run, light, progress, caller), std::move(light.facets), std::move(light.organs)};
   const auto& use = s.operators.use();
   if (use.found + use.read > 0) reuse.reused.emplace_back("operators", use.found + use.read);
   if (use.read > 0) reuse.reused.emplace_back("operators_read", use.read);
   if (use.made > 0) reuse.made.emplace_back("operators", use.made);
-  reuse.saved_seconds = use.saved_seconds;
+  const auto& transport = s.transports.use();
+  if (transport.found > 0) reuse.reused.emplace_back("transport", transport.found);
+  if (transport.made > 0) reuse.made.emplace_back("transport", transport.made);
+  reuse.saved_seconds = use.saved_seconds + transport.saved_seconds;
   s.reuse = reuse;
   s.geometry = geometry;
   s.whole = whole;

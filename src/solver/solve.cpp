@@ -37,15 +37,20 @@ bool needs_facets(const MethodChoice& choice, const Scene& scene, const PlacedSc
 }
 
 SolveReport run_method(const MethodChoice& choice, const RunSettings& run, const Scene& scene, const PlacedScene& placed,
-                       const std::optional<FacetScene>& facets, OperatorStore* operators, IrradianceSink& sink, Progress& progress) {
+                       const std::optional<FacetScene>& facets, const SolveCaller& caller, IrradianceSink& sink, Progress& progress) {
   if (choice.method == "instantiation") {
     auto settings = instantiation_settings(choice, run);
     const auto classes = classes_of_policies(scene);
     settings.classes = classes ? &*classes : nullptr;
-    settings.store = operators;
+    settings.store = caller.operators;
     return solve_instantiation(scene, placed, settings, sink, progress);
   }
-  if (choice.method != "reference") return solve_radiosity(scene, *facets, radiosity_settings(choice, run), sink, progress);
+  if (choice.method != "reference") {
+    auto settings = radiosity_settings(choice, run);
+    settings.store = caller.transports;
+    settings.geometry = caller.geometry;
+    return solve_radiosity(scene, *facets, settings, sink, progress);
+  }
   auto settings = reference_settings(run);
   if (placed.partial) {
     settings.facets = placed.facets;
@@ -180,7 +185,7 @@ class Run {
     // other lines for every solve, so that their errors have little in common
     RunSettings run = run_;
     run.seed = seed_of(run_) + solved_.size();
-    report = run_method(result_.choice, run, scene_, placed_, facets_, caller_.operators, both ? *both : rows, progress_);
+    report = run_method(result_.choice, run, scene_, placed_, facets_, caller_, both ? *both : rows, progress_);
     count_program();
     if (structures) structures->append(report.structures);
     sink_.end(progress_);

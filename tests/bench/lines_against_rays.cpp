@@ -290,7 +290,7 @@ std::array<HalfLinks, 2> traced(const Problem& p, std::uint32_t directions, std:
   RadiositySettings settings = p.settings;
   settings.density.directions = directions;
   settings.seed = seed;
-  auto links = line_links(p.elements, nullptr, {}, {}, settings, silent());
+  auto links = line_links(p.elements, nullptr, {}, {}, settings, false, silent());
   samples = 2.0 * static_cast<double>(links.fragments);
   return std::move(links.half);
 }

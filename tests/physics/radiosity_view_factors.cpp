@@ -57,7 +57,7 @@ Counts count_lines(const std::vector<Mesh>& surfaces, std::uint32_t directions, 
   settings.density.lines_per_element = lines_per_surface;
   settings.density.fewest_hits = 0;
   const auto elements = make_elements(scene, facets, settings);
-  const auto links = line_links(elements, nullptr, {}, {}, settings, silent());
+  const auto links = line_links(elements, nullptr, {}, {}, settings, false, silent());
   std::vector<std::size_t> organ_side(links.sides());
   for (std::size_t i = 0; i < organ_side.size(); ++i)
     organ_side[i] = 2 * facets.organ[elements.order[elements.row_of_cell[elements.cells[elements.first_cell[i / 2]]]]] + i % 2;

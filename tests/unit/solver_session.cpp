@@ -156,3 +156,62 @@ TEST_CASE("session: agrees with a solve without one to rounding, and goes on aft
   }
   CHECK(worst < 1e-5 * mean);
 }
+
+TEST_CASE("session: changed light reuses the transport of clustering and flat, to the bit", "[solver][session]") {
+  for (const char* method : {"clustering", "flat"}) {
+    CAPTURE(method);
+    RunSettings run = quick();
+    run.method = method;
+    auto scene = stand();
+    scene.ground = flat_ground({60, 60}, {2, 2}, {30, 30}, {0.12, 0.2});  // much of it far from all
+    Session session(run);
+    session.solve(scene);
+    CHECK(count(session.reused().made, "transport") == 1);
+    scene.states[0].sun->direction = glm::normalize(Vec3{-0.6, 0.3, 0.4});
+    scene.states[0].sky->model = SkyModel::sphere;  // from below as well
+    scene.states.push_back(scene.states[0]);
+    scene.states[1].sun.reset();
+    scene.states[1].sky->model = SkyModel::uniform;
+    const auto lit = session.solve(scene);
+    CHECK(count(session.reused().reused, "transport") == 1);
+    CHECK(session.reused().saved_seconds > 0);
+    CHECK(lit.facets.irradiance == fresh(scene, run).facets.irradiance);
+    const auto plain = solve(scene, run);
+    double worst = 0, mean = 0;
+    for (std::size_t i = 0; i < plain.facets.irradiance.size(); ++i) {
+      worst = std::max(worst, std::abs(double{lit.facets.irradiance[i]} - plain.facets.irradiance[i]));
+      mean += plain.facets.irradiance[i] / static_cast<double>(plain.facets.irradiance.size());
+    }
+    CHECK(worst < 1e-4 * mean);
+    for (std::size_t b = 0; b < 2; ++b) CHECK(lit.report.balance[0][b].escaped == Approx(plain.report.balance[0][b].escaped).epsilon(1e-5));
+    scene.plants[0].placements[1].map = Affine::translate({2.2, -0.4, 0.1});
+    session.solve(scene);
+    CHECK(count(session.reused().reused, "transport") == 0);
+  }
+}
+
+TEST_CASE("session: organs that stick in others are in the dark with a session too", "[solver][session]") {
+  RunSettings run = quick();
+  run.method = "clustering";
+  run.quality = Quality::standard;
+  auto scene = reference_runs::scene_with({"NIR"}, {uniform_optics("leaf", {0.45}, {0.40})});
+  reference_runs::point_sun(scene, {0.3, 0.1, 1}, 400);
+  reference_runs::sky(scene, SkyModel::uniform, 100);
+  const auto tube = [](double radius, double low, double high) {
+    Mesh mesh;
+    constexpr std::uint32_t n = 12;
+    for (std::uint32_t i = 0; i < n; ++i)
+      for (const double z : {low, high})
+        mesh.vertices.push_back({radius * std::cos(2 * std::numbers::pi * i / n), radius * std::sin(2 * std::numbers::pi * i / n), z});
+    for (std::uint32_t i = 0; i < n; ++i) {
+      const std::uint32_t a = 2 * i, b = 2 * ((i + 1) % n);
+      mesh.triangles.push_back({a, b, b + 1});
+      mesh.triangles.push_back({a, b + 1, a + 1});
+    }
+    return mesh;
+  };
+  reference_runs::add(scene, "stem", {tube(0.1, 0, 1), Mesh{{{0, 0, 0.5}, {0.4, -0.1, 0.6}, {0.4, 0.1, 0.6}}, {{0, 1, 2}}}}, 0);
+  Session session(run);
+  const auto a = session.solve(scene), b = solve(scene, run);
+  for (std::size_t o = 0; o < a.organs.count; ++o) CHECK(a.organs.absorbed_in(o) == Approx(b.organs.absorbed_in(o)).epsilon(1e-4));
+}

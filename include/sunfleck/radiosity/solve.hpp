@@ -1,7 +1,10 @@
 // Radiosity of a whole scene on one level: direct light, links from global lines, iteration, irradiance of every facet.
 #pragma once
 
+#include <string>
+
 #include <sunfleck/core/progress.hpp>
+#include <sunfleck/radiosity/transport_store.hpp>
 #include <sunfleck/scene/facets.hpp>
 #include <sunfleck/scene/run_settings.hpp>
 #include <sunfleck/scene/solution.hpp>
@@ -35,6 +38,8 @@ RadiosityDensity density_of(Quality quality);
 struct RadiositySettings : SolveSettings {
   RadiosityMethod method = RadiosityMethod::clustering;
   RadiosityDensity density = density_of(Quality::standard);
+  TransportStore* store = nullptr;  ///< what is kept from solve to solve; null = nothing is
+  std::string geometry;             ///< geometry_key() of the scene, with a store
 };
 
 /// Solves E = E0 + F R E for the irradiance E of both sides of every facet, all bands and lighting states together

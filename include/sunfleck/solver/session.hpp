@@ -13,7 +13,7 @@ namespace sunfleck {
 
 /// Where a session keeps what it reuses.
 struct SessionSettings {
-  std::uint64_t most_bytes = std::uint64_t{1} << 30;  ///< in memory, and as many in `folder`
+  std::uint64_t most_bytes = std::uint64_t{1} << 30;  ///< of each kind in memory, and as many operators in `folder`
   std::string folder;                                 ///< operators on disk, for later sessions; empty: none
 };
 
@@ -21,19 +21,20 @@ struct SessionSettings {
 struct Reuse {
   bool everything = false;  ///< scene and run were those of the solve before: its solution was given again
   bool geometry = false;    ///< only what shines had changed
-  /// Names and numbers of what was not computed again: "solution", "operators" (of originals: elements, links, lines), "operators_read"
-  /// (of these, from disk).
+  /// Names and numbers of what was not computed again: "solution"; "transport" (elements, links and lines of a whole scene); "operators"
+  /// (the same of originals), "operators_read" (of these, from disk).
   std::vector<std::pair<std::string, std::uint64_t>> reused;
   std::vector<std::pair<std::string, std::uint64_t>> made;  ///< the same of what was computed
   double saved_seconds = 0;                                 ///< that computing what was reused took when it was computed
 };
 
 /// A growth model's solver: what did not change is not computed again. Results are those of solve() with a store (OperatorStore): the same
-/// bits whatever the session has solved before. They differ from solve() without a session by how a single copy of a plant is gathered: by
+/// bits whatever the session has solved before. They differ from solve() without a session by the order of sums alone: by
 /// rounding, 1e-5 of the light of a facet at most.
 ///
-/// What is kept, by content: the last solution; and with method instantiation the operators of originals, so that changed light, and plants
-/// that are moved, added or taken away, reuse all that unchanged plants do with light inside. The other methods compute anew.
+/// What is kept, by content: the last solution; with methods clustering and flat the transport of the scene, which changed light reuses
+/// while nothing else changes; with method instantiation the operators of originals, so that changed light, and plants that are moved,
+/// added or taken away, reuse all that unchanged plants do with light inside.
 /// For one thread at a time. After an exception the session is as it was before, and can go on.
 class Session {
  public:

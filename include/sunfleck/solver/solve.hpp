@@ -57,12 +57,15 @@ struct SolveResult {
 };
 
 class OperatorStore;
+class TransportStore;
 
 /// What a caller did before it called, for the result's own figures, and what it keeps from solve to solve.
 struct SolveCaller {
   std::size_t bytes_at_start = resident_bytes();  ///< of the process, before it read anything
   double read_seconds = 0;                        ///< that reading the scene took
   OperatorStore* operators = nullptr;             ///< that this solve shares with others; null = none
+  TransportStore* transports = nullptr;           ///< the same, of the methods that have no originals
+  std::string geometry;                           ///< geometry_key() of the scene, with these
 };
 
 /// Solves a scene: chooses a method where `run` names none (choose_method), refuses what does not fit into memory, solves, and path-traces
