@@ -440,7 +440,7 @@ std::uint64_t LineLinks::link_count() const {
 
 std::size_t LineLinks::bytes() const {
   std::size_t total = bytes_of(whole) + bytes_of(enclosed_part) + bytes_of(enclosed) + bytes_of(projection);
-  for (std::size_t h = 0; h < 2; ++h) total += bytes_of_half(half[h]) + bytes_of(light[h].first_reflection) + direct[h].bytes();
+  for (std::size_t h = 0; h < 2; ++h) total += bytes_of_half(half[h]) + direct[h].bytes();
   return total;
 }
 

@@ -160,7 +160,7 @@ class Exchange {
 
 /// The lines, traced or kept from an earlier solve.
 std::shared_ptr<StoredTransport> trace(LitElements& lit, const RadiositySettings& settings, const SunReflection& sun,
-                                             const std::vector<const Sky*>& skies, bool recorded, Progress& progress) {
+                                       const std::vector<const Sky*>& skies, bool recorded, Progress& progress) {
   auto made = std::make_shared<StoredTransport>();
   if (settings.method == RadiosityMethod::clustering) made->tree = make_cluster_tree(lit.facets, lit.elements);
   lit.elements.tree = {};
@@ -220,7 +220,8 @@ ScatteredLight solve_scattering(LitElements& lit, const RadiositySettings& setti
   report.counts.emplace_back("directions", settings.density.directions);
   report.counts.emplace_back("fragments", links.fragments);
   report.counts.emplace_back("links", links.link_count());
-  report.memory.emplace_back("links", links.bytes() + (tree ? tree->bytes() : 0));
+  report.memory.emplace_back(
+      "links", links.bytes() + bytes_of(along[0].first_reflection) + bytes_of(along[1].first_reflection) + (tree ? tree->bytes() : 0));
   progress.line(fmt::format("{} elements, {} clusters, {} links", lit.elements.size(), tree ? tree->size() : 0, links.link_count()));
 
   watch = {};
