@@ -86,7 +86,7 @@ TEST_CASE("--error does not go with what contradicts it", "[error]") {
   };
   CHECK(contains(message({"--quality", "fine"}), "--error: found with --quality; expected one of them"));
   CHECK(contains(message({"--no-certificate"}), "--error: found with --no-certificate; expected to be judged by the certificate"));
-  CHECK(contains(message({"--method", "direct"}), "sunfleck: error: found method 'direct'; expected instantiation, clustering or flat"));
-  CHECK(contains(message({"--method", "reference"}), "sunfleck: error: found method 'reference'; expected instantiation, clustering or flat"));
+  CHECK(contains(message({"--method", "direct"}), "--error: found method 'direct'; expected instantiation, clustering or flat"));
+  CHECK(contains(message({"--method", "reference"}), "--error: found method 'reference'; expected instantiation, clustering or flat"));
   CHECK(folder.listing().empty());
 }
