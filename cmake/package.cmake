@@ -49,7 +49,7 @@ function(sunfleck_version_script file)
   set(names "")
   foreach(header ${ARGN})
     file(READ ${PROJECT_SOURCE_DIR}/include/${header} text)
-    string(REGEX REPLACE "//[^\n]*" "" text "${text}")
+    string(REGEX REPLACE "//[^\n]*|(class|struct) [A-Za-z_0-9]+;" "" text "${text}")  # comments, and what is only named
     string(REGEX MATCHALL "(class|struct) [A-Za-z_0-9]+|[A-Za-z_][A-Za-z_0-9]*\\(" found "${text}")
     list(APPEND names ${found})
   endforeach()

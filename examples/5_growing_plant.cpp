@@ -41,5 +41,5 @@ int main() {
     for (double l : length) std::printf(" %.3f", l);
     std::printf(" m\n");
   }
-  return length.back() > 1.5 * length.front() && std::isfinite(length.front()) ? 0 : 1;  // those in the shade stay behind
+  return length.back() > 1.25 * length.front() && std::isfinite(length.front()) ? 0 : 1;  // those in the shade stay behind
 }
