@@ -58,7 +58,7 @@ struct Members {
 };
 
 /// Finds originals, traces their coarse operators, and puts copies that reach into each other together: what stands between two leaves
-/// of a copy and is not of it is missing in the original's operator (measured in docs/instantiation.md). A copy in which others stand in
+/// of a copy and is not of it is missing in the original's operator (measured in docs/instantiation.md). A copy into which others reach in
 /// more than a twentieth of the lines is put together with all of them. Where that would cost more facets than the scene's originals have
 /// and 300,000 besides, the least tangled are left as they are.
 /// Members that stand in for structures stay apart: what they hide of each other is part of the approximation until they are opened.

@@ -10,7 +10,7 @@
 namespace sunfleck {
 
 /// What member `b` (b = a: an image of it; or MemberSurroundings::the_ground) spoils of member `a`: the share of the lines inside `a` that
-/// it stands in, and of the lines that leave `a` those that meet an inner face of it, as from within a house.
+/// it interrupts, and of the lines that leave `a` those that meet an inner face of it, as from within a house.
 struct Tangle {
   double share;
   std::uint32_t a, b;

@@ -12,16 +12,8 @@ namespace {
 std::vector<float> sums_over(const NearLinks& rows, const SunReflection& sun) {
   const std::size_t n = sun.columns;
   std::vector<float> out(rows.rows() * n, 0.0f);
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, rows.rows(), 256), [&](const auto& range) {
-    for (std::size_t i = range.begin(); i < range.end(); ++i) {
-      float* to = out.data() + i * n;
-      rows.for_row(i, [&](std::uint32_t cell_side, std::uint32_t lines) {
-        const float* from = sun.exitance.data() + std::size_t{cell_side} * n;
-        const auto count = static_cast<float>(lines);
-        for (std::size_t c = 0; c < n; ++c) to[c] += count * from[c];
-      });
-    }
-  });
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, rows.rows(), 256),
+                    [&](const auto& range) { weighted_sums(rows, sun.exitance.data(), n, out.data(), range.begin(), range.end()); });
   return out;
 }
 

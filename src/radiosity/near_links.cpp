@@ -37,7 +37,39 @@ void radix_sort(std::vector<std::uint32_t>& values, std::vector<std::uint32_t>& 
   }
 }
 
+/// Values [first, first + Columns) of n.
+template <std::size_t Columns>
+void sum_columns(const NearLinks& links, const float* values, std::size_t n, std::size_t first, float* out, std::size_t begin,
+                 std::size_t end) {
+  for (std::size_t i = begin; i < end; ++i) {
+    float sum[Columns] = {};
+    links.for_row(i, [&](std::uint32_t column, std::uint32_t lines) {
+      const float* from = values + std::size_t{column} * n + first;
+      const auto count = static_cast<float>(lines);
+      for (std::size_t c = 0; c < Columns; ++c) sum[c] += count * from[c];
+    });
+    float* to = out + i * n + first;
+    for (std::size_t c = 0; c < Columns; ++c) to[c] = sum[c];
+  }
+}
+
 }  // namespace
+
+void weighted_sums(const NearLinks& links, const float* values, std::size_t n, float* out, std::size_t begin, std::size_t end) {
+  std::size_t c = 0;
+  for (; c + 16 <= n; c += 16) sum_columns<16>(links, values, n, c, out, begin, end);
+  for (; c + 4 <= n; c += 4) sum_columns<4>(links, values, n, c, out, begin, end);
+  switch (n - c) {
+    case 1:
+      return sum_columns<1>(links, values, n, c, out, begin, end);
+    case 2:
+      return sum_columns<2>(links, values, n, c, out, begin, end);
+    case 3:
+      return sum_columns<3>(links, values, n, c, out, begin, end);
+    default:
+      return;
+  }
+}
 
 std::size_t NearLinks::size() const {
   std::size_t n = 0;

@@ -38,6 +38,10 @@ class NearLinks {
   std::vector<std::uint32_t> at_;           ///< [rows] piece of its block << 16 | where in it
 };
 
+/// out[i][n] = sum over the links of rows [begin, end) of count x values[column][n]: as many of the n together as stay in a processor's
+/// registers.
+void weighted_sums(const NearLinks& links, const float* values, std::size_t n, float* out, std::size_t begin, std::size_t end);
+
 /// Collects single lines, in any order, and merges them. A line waits in 4 bytes per end: row within its block, and column.
 class NearBuilder {
  public:

@@ -96,29 +96,6 @@ struct ChannelLines {
   }
 };
 
-/// Rows [begin, end) of near links, columns [first, first + Columns) of n.
-template <std::size_t Columns>
-void near_rows(const NearLinks& near, const float* b, float* s, std::size_t begin, std::size_t end, std::size_t n, std::size_t first = 0) {
-  for (std::size_t i = begin; i < end; ++i) {
-    float sum[Columns] = {};
-    near.for_row(i, [&](std::uint32_t column, std::uint32_t lines) {
-      const float* from = b + std::size_t{column} * n + first;
-      const auto count = static_cast<float>(lines);
-      for (std::size_t c = 0; c < Columns; ++c) sum[c] += count * from[c];
-    });
-    float* to = s + i * n + first;
-    for (std::size_t c = 0; c < Columns; ++c) to[c] = sum[c];
-  }
-}
-
-/// Any number of columns, as many together as stay in a processor's registers.
-void near_rows(const NearLinks& near, const float* b, float* s, std::size_t begin, std::size_t end, std::size_t n) {
-  std::size_t c = 0;
-  for (; c + 16 <= n; c += 16) near_rows<16>(near, b, s, begin, end, n, c);
-  for (; c + 4 <= n; c += 4) near_rows<4>(near, b, s, begin, end, n, c);
-  for (; c < n; ++c) near_rows<1>(near, b, s, begin, end, n, c);
-}
-
 }  // namespace
 
 void Gather::gather(const float* b, float* s) const {
@@ -130,22 +107,7 @@ void Gather::gather(const float* b, float* s) const {
   }
   const std::size_t element_sides = tree_ ? 2 * tree_->cluster_of_element.size() : 0;
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, sides, 512), [&](const auto& range) {
-    switch (n) {
-      case 1:
-        near_rows<1>(half_.near, b, s, range.begin(), range.end(), n);
-        break;
-      case 2:
-        near_rows<2>(half_.near, b, s, range.begin(), range.end(), n);
-        break;
-      case 3:
-        near_rows<3>(half_.near, b, s, range.begin(), range.end(), n);
-        break;
-      case 4:
-        near_rows<4>(half_.near, b, s, range.begin(), range.end(), n);
-        break;
-      default:
-        near_rows(half_.near, b, s, range.begin(), range.end(), n);
-    }
+    weighted_sums(half_.near, b, n, s, range.begin(), range.end());
     for (std::size_t i = range.begin(); i < range.end(); ++i) {
       float* to = s + i * n;
       if (i < element_sides) {

@@ -10,7 +10,7 @@
 
 namespace sunfleck {
 
-/// Share of the lines inside copies that other copies, images of their own across a cell's border, or the ground stand in, and of those
+/// Share of the lines inside copies that other copies, images of their own across a cell's border, or the ground interrupt, and of those
 /// that leave copies which meet others from within; root of its mean square by area over copies: from here on errors are of several per
 /// cent.
 inline constexpr double much_tangled = 0.015;

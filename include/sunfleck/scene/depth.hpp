@@ -31,7 +31,7 @@ struct Depth {
 StopAt stop_from_text(const std::string& text);
 
 /// Which placements `only` names. A pattern is a path of segments between "/": "tile[3]/coffee[1]" as the result names placements;
-/// "tile 3" is the same as "tile[3]", "tile" is any of them, "*" is anything. All that stands in a placement goes with it.
+/// "tile 3" is the same as "tile[3]", "tile" is any of them, "*" is anything. All that a placement holds goes with it.
 class PathPatterns {
  public:
   /// Throws InputError(where, ...) if a pattern is empty or has an empty segment.
@@ -58,7 +58,7 @@ class PathPatterns {
 };
 
 /// The structures within a plant that `stop` names, numbered in the plant's order from 1, and to which of them each structure of the plant
-/// belongs; what stands in none of them belongs to 0. Of a type that stands in itself, as axes bear axes, the innermost counts.
+/// belongs; what is within none of them belongs to 0. Of a type that is within itself, as axes bear axes, the innermost counts.
 struct StructureCuts {
   std::vector<std::uint32_t> of_structure;  ///< [structures]
   std::vector<std::uint32_t> structures;    ///< [closed] row of Plant::structures; [0] is the plant itself

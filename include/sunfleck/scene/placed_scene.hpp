@@ -46,7 +46,7 @@ struct PlacedCopy {
   std::uint64_t first_organ = 0;  ///< row of the result
 };
 
-/// A placement that is not opened, with all that stands in it: a plant, a group, or a structure within a plant.
+/// A placement that is not opened, with all that it holds: a plant, a group, or a structure within a plant.
 struct ClosedStructure {
   std::string path;
   bool is_group = false;
