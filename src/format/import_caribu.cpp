@@ -1,7 +1,6 @@
 // CARIBU cases: .can (read as a plant), .opt (optical properties, a band each), .light (directions), .8 (the pattern that repeats).
 // As openalea.caribu's file_adaptor.py (OpenAlea) and its Label read them; Chelle & Andrieu 1998, doi:10.1016/S0304-3800(98)00100-8.
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <limits>
@@ -11,9 +10,9 @@
 #include <fmt/format.h>
 
 #include <format/import_parts.hpp>
-#include <format/text.hpp>
 #include <sunfleck/core/error.hpp>
 #include <sunfleck/core/utf8.hpp>
+#include <sunfleck/format/caribu_files.hpp>
 #include <sunfleck/format/read_plant.hpp>
 #include <sunfleck/light/state.hpp>
 
@@ -21,148 +20,13 @@ namespace sunfleck {
 
 namespace {
 
-/// One optical species: a stem's reflectance, then reflectance and transmittance of a leaf's upper and lower side; -1 = not given.
-struct OptSpecies {
-  double stem, upper_reflectance, upper_transmittance, lower_reflectance, lower_transmittance;
-  long line;
-};
-
-struct OptFile {
-  std::string file, band;
-  double soil = -1;
-  long soil_line = 0;
-  std::vector<OptSpecies> species;
-};
-
-/// Calls visit(words, number) for each line of a text file.
-template <class Visit>
-void each_line(const std::string& file, Visit&& visit) {
-  std::vector<std::string> ignored;  // comments, of which nothing is kept
-  const std::string text = read_text(file, ignored);
-  Lines lines(text);
-  for (std::string_view line; lines.next(line);) {
-    Words words(line);
-    visit(words, lines.number());
-  }
-}
-
-class OptReader {
- public:
-  explicit OptReader(const std::string& file) : file_(file) {
-    out_.file = file;
-    out_.band = clean_name(std::filesystem::path(file).stem().string());
-    std::string upper = out_.band;
-    std::transform(upper.begin(), upper.end(), upper.begin(), [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
-    if (upper == "PAR" || upper == "NIR") out_.band = upper;
-  }
-
-  OptFile read() {
-    std::int64_t promised = -1;
-    each_line(file_, [&](Words& words, long number) {
-      line_ = number;
-      const std::string_view key = words.next();
-      if (key.empty() || key[0] == '#') return;
-      if (key[0] == 'n') {
-        if (!to_integer(words.next(), promised) || promised < 1) fail("n without a number of species", "\"n 2\"");
-      } else if (key[0] == 's') {
-        lambertian(words);
-        out_.soil = fraction(words, "the soil's reflectance");
-        out_.soil_line = line_;
-      } else if (key[0] == 'e') {
-        species(words);
-      } else {
-        fail(in_quotes(key), "n, s or e, or a comment \"# ...\"");
-      }
-    });
-    line_ = 0;
-    if (out_.species.empty()) fail("no species", "lines \"e d RHO  d RHO TAU  d RHO TAU\"");
-    if (promised >= 0 && static_cast<std::size_t>(promised) != out_.species.size())
-      fail(fmt::format("{} species", out_.species.size()), fmt::format("the {} that line n tells of", promised));
-    return out_;
-  }
-
- private:
-  [[noreturn]] void fail(const std::string& found, const std::string& expected) const {
-    throw InputError(location(file_, line_), found, expected);
-  }
-
-  void lambertian(Words& words) const {
-    const auto word = words.next();
-    if (word != "d") fail(fmt::format("{}", in_quotes(word)), "\"d\": diffuse, the only kind of surface there is here");
-  }
-
-  double fraction(Words& words, const char* what) const {
-    const auto word = words.next();
-    double value = 0;
-    if (!to_number(word, value) || !(value <= 1) || !(value >= 0 || value == -1))
-      fail(fmt::format("{} = {}", what, in_quotes(word)), "a number from 0 to 1, or -1 for none");
-    return value;
-  }
-
-  void species(Words& words) {
-    OptSpecies s{};
-    s.line = line_;
-    lambertian(words), s.stem = fraction(words, "the stem's reflectance");
-    lambertian(words), s.upper_reflectance = fraction(words, "the upper side's reflectance");
-    s.upper_transmittance = fraction(words, "the upper side's transmittance");
-    lambertian(words), s.lower_reflectance = fraction(words, "the lower side's reflectance");
-    s.lower_transmittance = fraction(words, "the lower side's transmittance");
-    out_.species.push_back(s);
-  }
-
-  const std::string& file_;
-  long line_ = 0;
-  OptFile out_;
-};
-
-std::vector<LightDirection> read_light(const std::string& file) {
-  std::vector<LightDirection> out;
-  double sum = 0;
-  each_line(file, [&](Words& words, long number) {
-    const auto first = words.next();
-    if (first.empty() || first[0] == '#') return;
-    const auto where = location(file, number);
-    double energy = 0;
-    if (!to_number(first, energy) || !std::isfinite(energy) || energy < 0)
-      throw InputError(where, fmt::format("energy {}", in_quotes(first)),
-                       "a number that is not negative: irradiance of a horizontal plane");
-    const Vec3 v = read_point(words, file, number, "a direction");
-    if (!words.rest().empty()) throw InputError(where, in_quotes(words.rest()), "four numbers: energy and direction");
-    const Vec3 towards = -glm::normalize(v / std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)}));  // no square overflows
-    if (!(towards.z > 0)) throw InputError(where, fmt::format("direction {} {} {}", v.x, v.y, v.z), "one that goes down (z below 0)");
-    sum += energy;
-    if (!(energy / towards.z <= brightest) || !(sum <= brightest))
-      throw InputError(where, fmt::format("energy {}", energy), fmt::format("a beam, and a sum of all, of at most {:g} W m^-2", brightest));
-    if (energy > 0) out.push_back({energy, towards, number});
-  });
-  if (out.empty()) throw InputError(file, "no light", "lines \"ENERGY VX VY VZ\" with an energy above zero");
-  return out;
-}
-
-/// xmin, ymin, xmax, ymax in the file's unit.
-std::array<double, 4> read_pattern(const std::string& file) {
-  std::vector<double> values;
-  each_line(file, [&](Words& words, long number) {
-    for (auto word = words.next(); !word.empty() && word[0] != '#'; word = words.next()) {
-      double value = 0;
-      if (!to_number(word, value) || !std::isfinite(value)) throw InputError(location(file, number), in_quotes(word), "a finite number");
-      values.push_back(value);
-    }
-  });
-  if (values.size() != 4) throw InputError(file, fmt::format("{} numbers", values.size()), "four: xmin ymin, and below xmax ymax");
-  if (!(values[2] > values[0]) || !(values[3] > values[1]))
-    throw InputError(file, fmt::format("{} {} to {} {}", values[0], values[1], values[2], values[3]),
-                     "xmax above xmin, and ymax above ymin");
-  return {values[0], values[1], values[2], values[3]};
-}
-
 class Caribu {
  public:
   explicit Caribu(const ImportChoice& choice) : choice_(choice) {
     for (const auto& file : choice.files) {
       const std::string suffix = suffix_of(file);
       if (suffix == ".opt") {
-        opts_.push_back(OptReader(file).read());
+        opts_.push_back(read_opt(file));
       } else if (suffix == ".can" || suffix == ".light" || suffix == ".8") {
         auto& known = suffix == ".can" ? can_ : suffix == ".light" ? light_ : pattern_;
         if (!known.empty()) throw UsageError(fmt::format("{}: found a second {} beside {}; expected one", file, suffix, known));
@@ -195,14 +59,14 @@ class Caribu {
     text_ += "]\n\n";
     std::array<double, 4> cell{};
     if (!pattern_.empty()) {
-      cell = read_pattern(pattern_);
+      cell = read_pattern_file(pattern_);
       for (auto& x : cell)
         if (!(std::fabs(x *= metre) <= farthest_coordinate))
           throw InputError(pattern_, fmt::format("{} m", x),
                            fmt::format("coordinates from {:g} to {:g} m", -farthest_coordinate, farthest_coordinate));
       text_ += fmt::format("[domain]\nperiodic = [{}, {}, {}, {}]\n\n", cell[0], cell[1], cell[2], cell[3]);
     }
-    const auto light = light_.empty() ? std::vector<LightDirection>{{1.0, {0, 0, 1}, 0}} : read_light(light_);
+    const auto light = light_.empty() ? std::vector<LightDirection>{{1.0, {0, 0, 1}, 0}} : read_light_file(light_);
     if (light_.empty()) out_.notes.push_back("no .light: CARIBU's default, 1 W m^-2 from the zenith");
     text_ += light_tables(light, bands_, choice_.light_states, out_.notes) + "\n";
     const std::string keys = optics(plant);
@@ -256,7 +120,7 @@ class Caribu {
     for (const auto& opt : opts_) {
       if (number < 1 || number > opt.species.size())
         throw InputError(opt.file, fmt::format("{} species", opt.species.size()), fmt::format("species {}, which {} has", number, can_));
-      const OptSpecies& s = opt.species[number - 1];
+      const CaribuOptics::Species& s = opt.species[number - 1];
       const auto given = [&](double value, const char* what) {
         if (value < 0)
           throw InputError(location(opt.file, s.line), fmt::format("no {} of species {}", what, number),
@@ -288,7 +152,7 @@ class Caribu {
 
   const ImportChoice& choice_;
   std::string can_, light_, pattern_, text_;
-  std::vector<OptFile> opts_;
+  std::vector<CaribuOptics> opts_;
   std::vector<std::string> bands_;
   ImportedScene out_;
 };

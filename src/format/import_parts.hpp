@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <sunfleck/core/vector.hpp>
+#include <sunfleck/format/caribu_files.hpp>
 #include <sunfleck/format/import_scene.hpp>
 
 namespace sunfleck {
@@ -22,12 +23,6 @@ std::string path_from(const std::string& scene, const std::string& file);
 /// Suffix with its dot, in small letters.
 std::string suffix_of(const std::string& file);
 
-/// A direction of a .light file: horizontal irradiance, and the unit vector towards the source.
-struct LightDirection {
-  double irradiance;
-  Vec3 towards;
-  long line;
-};
 /// The light of a .light file as [sun], [sky] or [[state]] tables. Directions whose irradiances are those of their Voronoi cells under a
 /// uniform or a standard overcast sky, to 3 % in all, become that sky; others that cover the hemisphere evenly, a sky of those cells
 /// (model = "file"); one more than those, or a single one, the sun; else every direction is a state of one second with a sun of its own.

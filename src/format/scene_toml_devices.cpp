@@ -149,16 +149,17 @@ SensorProfile read_profile(const TomlValue& table) {
   return profile;
 }
 
-SensorEntry read_sensor(const TomlValue& table, Scene& scene) {
+SensorEntry read_sensor(const TomlValue& table, Scene& scene, const Mesh* given) {
   SensorEntry sensor;
   sensor.name = table.need("name", "a name, under which the result keeps it").text();
   const auto grid = table.get("grid"), mesh = table.get("mesh"), profile = table.get("profile"), unit = table.get("unit");
-  if (grid.has_value() + mesh.has_value() + profile.has_value() != 1)
+  if (grid.has_value() + (mesh || given) + profile.has_value() != 1)
     throw InputError(table.where(), grid || mesh || profile ? "several shapes" : "no shape", "one of `grid`, `mesh` and `profile`");
   if (unit && !mesh) unit->fail("`unit` without `mesh`", "no unit: lengths of the scene are metres");
   if (grid) sensor.shape = read_sensor_grid(*grid);
   if (profile) sensor.shape = read_profile(*profile);
   if (mesh) sensor.shape = read_flat_mesh(read_path(*mesh, scene, "a mesh file"), read_unit(table), scene.notes);
+  if (given) sensor.shape = *given;
   sensor.both_sides = profile.has_value();
   if (const auto sides = table.get("sides")) {
     if (profile) sides->fail("`sides` of a profile", "no `sides`: it has both");
@@ -181,7 +182,7 @@ TomlSchema sensor_schema() {
       {{"grid", TomlSchema::of({"z", "cells", "size", "center"})}, {"profile", TomlSchema::of({"step", "low", "high", "size", "center"})}});
 }
 
-void read_lamps(const TomlValue& root, Scene& scene) {
+void read_lamps(const TomlValue& root, Scene& scene, const Mesh* given) {
   const auto lamps = root.get("lamp");
   if (!lamps) return;
   for (const auto& table : lamps->tables()) {
@@ -189,26 +190,27 @@ void read_lamps(const TomlValue& root, Scene& scene) {
     lamp.name = fmt::format("lamp {}", scene.lamps.size() + 1);
     if (const auto name = table.get("name")) lamp.name = name->text();
     const auto mesh = table.get("mesh"), ies = table.get("ies"), unit = table.get("unit");
-    if (mesh.has_value() == ies.has_value())
-      throw InputError(table.where(), mesh ? "both `mesh` and `ies`" : "neither `mesh` nor `ies`", "one of them");
+    const bool has_mesh = mesh || given;
+    if (has_mesh == ies.has_value())
+      throw InputError(table.where(), has_mesh ? "both `mesh` and `ies`" : "neither `mesh` nor `ies`", "one of them");
     if (unit && !mesh) unit->fail("`unit` without `mesh`", "no unit: a photometric file has its own");
     if (ies)
       lamp.photometry = std::make_shared<const Photometry>(read_ies(read_path(*ies, scene, "a photometric file (IES LM-63)")));
     else
-      lamp.mesh = read_flat_mesh(read_path(*mesh, scene, "a mesh file"), read_unit(table), scene.notes);
+      lamp.mesh = given ? *given : read_flat_mesh(read_path(*mesh, scene, "a mesh file"), read_unit(table), scene.notes);
     read_lamp_strength(table, scene, lamp);
     lamp.placements = lamp_placements(table, scene, ies.has_value());
     read_lamp_states(table, scene, lamp);
-    if (mesh) note_upward(table, lamp, scene);
+    if (has_mesh) note_upward(table, lamp, scene);
     scene.lamps.push_back(std::move(lamp));
   }
 }
 
-void read_sensors(const TomlValue& root, Scene& scene) {
+void read_sensors(const TomlValue& root, Scene& scene, const Mesh* given) {
   const auto sensors = root.get("sensor");
   if (!sensors) return;
   for (const auto& table : sensors->tables()) {
-    scene.sensors.push_back(read_sensor(table, scene));
+    scene.sensors.push_back(read_sensor(table, scene, given));
     for (std::size_t i = 0; i + 1 < scene.sensors.size(); ++i)
       if (scene.sensors[i].name == scene.sensors.back().name)
         table.get("name")->fail(fmt::format("\"{}\" twice", scene.sensors.back().name), "a name of its own for every sensor");

@@ -115,14 +115,14 @@ void read_optics(const TomlValue& root, Scene& scene) {
   }
 }
 
-void read_ground(const TomlValue& root, Scene& scene) {
+void read_ground(const TomlValue& root, Scene& scene, const Mesh* given) {
   const auto table = root.get("ground");
   if (!table) return;
   Ground ground;
-  if (const auto mesh = table->get("mesh")) {
+  if (const auto mesh = table->get("mesh"); mesh || given) {
     for (const char* key : {"size", "center", "cells", "height"})
       if (const auto value = table->get(key)) value->fail(fmt::format("`{}` beside `mesh`", key), "one of them: the mesh has its own");
-    ground.mesh = read_flat_mesh(read_path(*mesh, scene, "a mesh file"), read_unit(*table), scene.notes);
+    ground.mesh = given ? *given : read_flat_mesh(read_path(*mesh, scene, "a mesh file"), read_unit(*table), scene.notes);
   } else {
     if (const auto unit = table->get("unit")) unit->fail("`unit` without `mesh`", "no unit: lengths of the scene are metres");
     read_ground_plane(*table, scene, ground);

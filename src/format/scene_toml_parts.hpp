@@ -35,7 +35,8 @@ std::shared_ptr<const SkyTable> read_sky_table(const TomlValue& sky, const Scene
 TomlSchema optics_schema(const TomlSchema& per_band);
 TomlSchema ground_schema(const TomlSchema& per_band);
 void read_optics(const TomlValue& root, Scene& scene);
-void read_ground(const TomlValue& root, Scene& scene);
+/// `given`: what a scene in memory has in the place of a mesh file; so for lamps and sensors.
+void read_ground(const TomlValue& root, Scene& scene, const Mesh* given = nullptr);
 /// All faces of a mesh file as one mesh, in their order; what its reader noted is appended.
 Mesh read_flat_mesh(const std::string& file, double unit_m, std::vector<std::string>& notes);
 
@@ -59,8 +60,8 @@ double read_unit(const TomlValue& owner);
 TomlSchema lamp_schema(const TomlSchema& per_band);
 TomlSchema sensor_schema();
 /// [[lamp]] -> Scene::lamps and [[sensor]] -> Scene::sensors, when the states are known.
-void read_lamps(const TomlValue& root, Scene& scene);
-void read_sensors(const TomlValue& root, Scene& scene);
+void read_lamps(const TomlValue& root, Scene& scene, const Mesh* given = nullptr);
+void read_sensors(const TomlValue& root, Scene& scene, const Mesh* given = nullptr);
 
 // scene_toml_choices.cpp
 TomlSchema output_schema();

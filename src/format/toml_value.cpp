@@ -31,6 +31,11 @@ long line_of(const toml::node& node, long otherwise) {
   return line > 0 ? line : otherwise;
 }
 
+/// Lines of a text that no file holds tell nobody anything.
+long line_in(const std::string& file, long line) {
+  return file.empty() ? 0 : line;
+}
+
 std::string joined_path(const std::string& path, const std::string& key) {
   return path.empty() ? key : path + "." + key;
 }
@@ -61,10 +66,10 @@ long TomlValue::line() const {
   return line_;
 }
 std::string TomlValue::where() const {
-  return location(document_->file, line_, path_);
+  return location(document_->file, line_in(document_->file, line_), path_);
 }
 std::string TomlValue::where(const std::string& key) const {
-  return location(document_->file, line_, joined_path(path_, key));
+  return location(document_->file, line_in(document_->file, line_), joined_path(path_, key));
 }
 std::string TomlValue::found() const {
   return shown(node_of(node_));
@@ -268,7 +273,7 @@ void collect_unknown(const toml::node& node, const TomlSchema& schema, const std
     } else if (!schema.any_key) {
       const auto line = static_cast<long>(key.source().begin.line);
       const std::string nearest = nearest_name(name, known);
-      unknown.push_back({line, location(file, line, full) + ": unknown key; " +
+      unknown.push_back({line, location(file, line_in(file, line), full) + ": unknown key; " +
                                    (nearest.empty() ? "known here: " + joined(known) : "did you mean \"" + nearest + "\"?")});
     }
   }

@@ -32,20 +32,22 @@ void Image::fill(int x0, int y0, int x1, int y1, const Rgb8& colour, double opac
     for (int x = std::max(0, x0); x < std::min(width_, x1); ++x) blend(x, y, colour, opacity);
 }
 
+std::string png_bytes(const Image& image) {
+  std::string bytes;
+  const auto append = [](void* context, void* data, int size) {
+    static_cast<std::string*>(context)->append(static_cast<const char*>(data), static_cast<std::size_t>(size));
+  };
+  if (stbi_write_png_to_func(append, &bytes, image.width(), image.height(), 3, image.data(), image.width() * 3) == 0)
+    throw OutputError("a picture could not be encoded");
+  return bytes;
+}
+
 void write_png(const Image& image, const std::string& file) {
   std::string suffix = std::filesystem::path(file).extension().string();
   std::transform(suffix.begin(), suffix.end(), suffix.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   if (suffix != ".png") throw UsageError(fmt::format("{}: found the suffix '{}'; expected .png", file, suffix));
 
-  std::vector<unsigned char> bytes;
-  const auto append = [](void* context, void* data, int size) {
-    const auto* first = static_cast<const unsigned char*>(data);
-    auto& out = *static_cast<std::vector<unsigned char>*>(context);
-    out.insert(out.end(), first, first + size);
-  };
-  if (stbi_write_png_to_func(append, &bytes, image.width(), image.height(), 3, image.data(), image.width() * 3) == 0)
-    throw OutputError(fmt::format("{}: the picture could not be encoded", file));
-
+  const std::string bytes = png_bytes(image);
   ReplacedFile out(file);
   out.write(bytes.data(), bytes.size());
   out.commit();

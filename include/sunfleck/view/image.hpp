@@ -29,6 +29,9 @@ class Image {
   std::vector<Rgb8> pixels_;
 };
 
+/// The picture as an 8-bit RGB PNG. Throws OutputError where it cannot be encoded.
+std::string png_bytes(const Image& image);
+
 /// Writes an 8-bit RGB PNG, complete or not at all: to a temporary name beside it that is renamed when done. Throws UsageError
 /// unless the name ends in .png, OutputError where it cannot be written.
 void write_png(const Image& image, const std::string& file);
