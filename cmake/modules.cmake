@@ -46,7 +46,7 @@ function(sunfleck_module name)
   add_library(sunfleck_${name} STATIC ${sources})
   target_include_directories(sunfleck_${name} PUBLIC ${PROJECT_SOURCE_DIR}/include PRIVATE ${PROJECT_SOURCE_DIR}/src)
   target_link_libraries(sunfleck_${name} PUBLIC ${M_LINK} PRIVATE ${M_PRIVATE})
-  if(SUNFLECK_INSTALL)  # for the shared library; calls within it are inlined as they are in programs
+  if(SUNFLECK_INSTALL OR SUNFLECK_PYTHON)  # for the shared library and the Python module; calls within it are inlined as they are in programs
     set_target_properties(sunfleck_${name} PROPERTIES POSITION_INDEPENDENT_CODE ON)
     target_compile_options(sunfleck_${name} PRIVATE -fno-semantic-interposition)
   endif()
