@@ -16,6 +16,7 @@ struct Session::Impl {
   std::string geometry, whole;  ///< keys of the last scene
   std::optional<Solution> last;
   double last_seconds = 0;
+  bool trusted = false;  ///< the last certificate did not speak against the method that the program chose
   Reuse reuse;
 };
 
@@ -26,7 +27,7 @@ std::string run_key(const RunSettings& run, bool facets) {
   ContentKey key("run");
   key.put(run.method.value_or("")), key.put(run.quality.value_or(Quality::standard)), key.put(run.quality.has_value());
   for (const auto& e : run.error) key.put(e.band), key.put(e.error);
-  key.put(run.seed.value_or(1)), key.put(run.certificate.value_or(true));
+  key.put(run.seed.value_or(1)), key.put(run.certificate.has_value()), key.put(run.certificate.value_or(true));
   key.put(run.certificate_organs.value_or(0)), key.put(run.certificate_rays.value_or(0)), key.put(run.samples.value_or(0));
   key.put(run.depth.only), key.put(run.depth.stop_at.type), key.put(run.depth.stop_at.size.value_or(-1.0));
   key.put(run.depth.stop_at.leaf_count.value_or(0)), key.put(facets);
@@ -44,6 +45,8 @@ const Reuse& Session::reused() const {
 
 Solution Session::solve(const Scene& scene, Progress& progress, bool facets) {
   Impl& s = *impl_;
+  RunSettings settings = run;
+  if (!settings.certificate && settings.error.empty() && s.trusted) settings.certificate = false;
   const std::string geometry = geometry_key(scene), whole = scene_key(scene, geometry) + run_key(run, facets);
   Reuse reuse;
   reuse.geometry = geometry == s.geometry;
@@ -62,7 +65,7 @@ Solution Session::solve(const Scene& scene, Progress& progress, bool facets) {
   caller.operators = &s.operators;
   caller.transports = &s.transports;
   caller.geometry = geometry;
-  Solution solution{sunfleck::solve(scene, run, light, progress, caller), std::move(light.facets), std::move(light.organs)};
+  Solution solution{sunfleck::solve(scene, settings, light, progress, caller), std::move(light.facets), std::move(light.organs)};
   const auto& use = s.operators.use();
   if (use.found + use.read > 0) reuse.reused.emplace_back("operators", use.found + use.read);
   if (use.read > 0) reuse.reused.emplace_back("operators_read", use.read);
@@ -75,6 +78,7 @@ Solution Session::solve(const Scene& scene, Progress& progress, bool facets) {
   s.geometry = geometry;
   s.whole = whole;
   s.last = solution;
+  if (solution.certificate) s.trusted = solution.report.status == SolveStatus::converged && !solution.tried_again;
   s.last_seconds = watch.seconds();
   return solution;
 }

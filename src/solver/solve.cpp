@@ -226,6 +226,7 @@ class Run {
         progress_.line(fmt::format("the certificate finds {}: solving again with method {}{}", text_of(*contradicted_, *aims_, scene_),
                                    other->method, other->fineness ? fmt::format(" at fineness {:.2f}", *other->fineness) : ""));
         choice = *other;
+        result_.tried_again = true;
         if (!facets_ && needs_facets(choice, scene_, placed_)) facets_ = expand(scene_);
         if (refinement_) refinement_.emplace(goal_, choice.method);
         solved_.clear();

@@ -215,3 +215,18 @@ TEST_CASE("session: organs that stick in others are in the dark with a session t
   const auto a = session.solve(scene), b = solve(scene, run);
   for (std::size_t o = 0; o < a.organs.count; ++o) CHECK(a.organs.absorbed_in(o) == Approx(b.organs.absorbed_in(o)).epsilon(1e-4));
 }
+
+TEST_CASE("session: the first solve is certified, the others where that is asked for or needed", "[solver][session]") {
+  RunSettings run = quick();
+  run.certificate.reset();
+  run.certificate_rays = 20'000;
+  auto scene = stand();
+  Session session(run);
+  CHECK(session.solve(scene).certificate);
+  scene.states[0].sun->direction = glm::normalize(Vec3{-0.6, 0.3, 0.4});
+  CHECK_FALSE(session.solve(scene).certificate);
+  session.run.certificate = true;
+  CHECK(session.solve(scene).certificate);
+  Session never(quick());
+  CHECK_FALSE(never.solve(scene).certificate);
+}

@@ -35,7 +35,8 @@ struct Reuse {
 /// What is kept, by content: the last solution; with methods clustering and flat the transport of the scene, which changed light reuses
 /// while nothing else changes; with method instantiation the operators of originals, so that changed light, and plants that are moved,
 /// added or taken away, reuse all that unchanged plants do with light inside.
-/// For one thread at a time. After an exception the session is as it was before, and can go on.
+/// The certificate, unless RunSettings say whether it is wanted: of the first solve alone, as steps are many; of all, where it spoke
+/// against the first choice of a method. For one thread at a time. After an exception the session is as it was before, and can go on.
 class Session {
  public:
   explicit Session(RunSettings run = {}, SessionSettings settings = {});

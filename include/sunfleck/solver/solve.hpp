@@ -51,6 +51,7 @@ struct SolveResult {
   SolveReport report;                      ///< status, balance, iterations, counts, memory, seconds, sensors
   Depth depth;                             ///< to which the scene was opened
   std::uint64_t facets = 0;                ///< that the result has rows of
+  bool tried_again = false;                ///< the certificate contradicted the method first chosen, and another was taken
   std::optional<Certificate> certificate;  ///< absent where none was wanted, or nothing can be checked
   /// Of a result that is not as it was asked for (report.status is not converged): what was found, and what helps. Else empty.
   std::string verdict;
