@@ -181,3 +181,39 @@ def test_star_of_a_flat_leaf_is_one():
     assert star["leaf"] == pytest.approx(1, rel=1e-4) and exposed["leaf"] == pytest.approx(0.5e-2, rel=1e-4)
     with pytest.raises(ValueError, match="convUnit"):
         caribu_star({"leaf": [LOWER]}, convUnit=3)
+
+
+def test_sky_tools_as_scripts_use_them():
+    from sunfleck.caribu.sky_tools import GenSky, GetLight, GetLightsSun, Gensun, spitters_horaire
+    from sunfleck.caribu.sky_tools.turtle import turtle as sectors_of
+
+    for kind in ("soc", "uoc"):
+        sky = GenSky.GenSky()(3.0, kind, 4, 5)
+        assert sky.get_Rs() == pytest.approx(3) and len(sky.sky) == 20
+        lines = [[float(x) for x in line.split()] for line in GetLight.GetLight(sky).splitlines()]
+        np.testing.assert_allclose(lines, [s[:4] for s in sky.sky])
+        light = [(e, v) for e, *v in lines]
+        assert CaribuScene({"a": [LOWER]}, light=light).run()[1]["default_band"]["Ei"]["a"] == pytest.approx(3, rel=1e-6)
+    # the first ring of an overcast sky, 0 to 18 degrees from the zenith: 3/7 sin^2 + 4/7 (1 - cos^3) of all
+    edge = np.radians(18)
+    overcast = GenSky.GenSky()(1.0, "soc", 4, 5).sky
+    assert sum(s[0] for s in overcast if s[5] == 0) == pytest.approx(3 / 7 * np.sin(edge) ** 2 + 4 / 7 * (1 - np.cos(edge) ** 3))
+
+    noon, morning, night = (Gensun.Gensun()(2.0, 172, hour, 45.0) for hour in (12, 8, 0))
+    assert np.degrees(noon.elev) == pytest.approx(45 - 23.45, abs=0.1)
+    energy, *way = map(float, GetLightsSun.GetLightsSun(noon).split())
+    np.testing.assert_allclose([energy, *way], [2, np.sin(noon.elev), 0, -np.cos(noon.elev)], atol=1e-12)  # from the south to X, north
+    assert float(GetLightsSun.GetLightsSun(morning).split()[2]) > 0.5 and GetLightsSun.GetLightsSun(night) == ""  # from the east to Y, west
+
+    assert spitters_horaire.RdRsH(50, 172, 12, 45) == 1 and spitters_horaire.RdRsH(0, 172, 0, 45) == 1
+    sine = np.cos(noon.elev)
+    assert spitters_horaire.RdRsH(1200, 172, 12, 45) == pytest.approx(0.847 - 1.61 * sine + 1.04 * sine**2)
+    assert spitters_horaire.dH(spitters_horaire.DayLength(45, spitters_horaire.DecliSun(80))) == pytest.approx(12, abs=0.1)
+    (table,), = spitters_horaire.spitters_horaire()([[["DOY", "172"], ["HU", "12"], ["Rg", "50"], ["group", "1"]]], 45)
+    assert [c[0] for c in table] == ["DOY", "HU", "Rg", "RdRg", "group"] and table[3][1] == "1.0"
+
+    energies, across, ways, heights, azimuths = sectors_of("46", "soc", 2.0)
+    assert sum(energies) == pytest.approx(2) and len(azimuths) == 46
+    np.testing.assert_allclose(np.multiply(across, [-v[2] for v in ways]), energies)
+    ring = sorted(a % 360 for a, h in zip(azimuths, heights) if abs(h - 26.57) < 0.1)
+    np.testing.assert_allclose(np.round(ring, 3) % 360, [0, 72, 144, 216, 288], atol=0.01)
