@@ -51,7 +51,7 @@ def read_table(file: str | os.PathLike[str], bands: Mapping[str, tuple[float, fl
     any value is above 1.5. Raises ValueError naming file, line and column."""
     with open(file, encoding="utf-8-sig") as lines:
         rows = [[cell.strip() for cell in line.split("#")[0].split(",")] for line in lines]
-    header = next((r for r in rows if any(r)), [])
+    header: list[str] = next((r for r in rows if any(r)), [])
     names = {"wavelength", "reflectance", "transmittance", "spectrum"}
     if not {"wavelength", "reflectance"} <= set(header) or not set(header) <= names:
         raise ValueError(f"{os.fspath(file)}: found columns {', '.join(header)}; expected wavelength, reflectance, and any of transmittance, spectrum")

@@ -157,7 +157,8 @@ def read_epw(file: str | os.PathLike[str]) -> Weather:
 
 def read_tmy3(file: str | os.PathLike[str]) -> Weather:
     """A TMY3 file (NREL, CSV with two header lines). Warns of gaps; raises ValueError naming file and line."""
-    hours, place, name = [], None, os.fspath(file)
+    hours: list[Hour] = []
+    place, name = None, os.fspath(file)
     columns: dict[str, int] = {}
     wanted = {"Date (MM/DD/YYYY)": "date", "Time (HH:MM)": "time", "GHI (W/m^2)": "g", "DNI (W/m^2)": "n", "DHI (W/m^2)": "d"}
     for number, row in _rows(file):

@@ -200,7 +200,7 @@ def test_sky_tools_as_scripts_use_them():
     assert sum(s[0] for s in overcast if s[5] == 0) == pytest.approx(3 / 7 * np.sin(edge) ** 2 + 4 / 7 * (1 - np.cos(edge) ** 3))
 
     noon, morning, night = (Gensun.Gensun()(2.0, 172, hour, 45.0) for hour in (12, 8, 0))
-    assert np.degrees(noon.elev) == pytest.approx(45 - 23.45, abs=0.1)
+    assert np.degrees(noon.elev) == pytest.approx(45 - 23.45, abs=0.3)  # a short series
     energy, *way = map(float, GetLightsSun.GetLightsSun(noon).split())
     np.testing.assert_allclose([energy, *way], [2, np.sin(noon.elev), 0, -np.cos(noon.elev)], atol=1e-12)  # from the south to X, north
     assert float(GetLightsSun.GetLightsSun(morning).split()[2]) > 0.5 and GetLightsSun.GetLightsSun(night) == ""  # from the east to Y, west
@@ -217,3 +217,53 @@ def test_sky_tools_as_scripts_use_them():
     np.testing.assert_allclose(np.multiply(across, [-v[2] for v in ways]), energies)
     ring = sorted(a % 360 for a, h in zip(azimuths, heights) if abs(h - 26.57) < 0.1)
     np.testing.assert_allclose(np.round(ring, 3) % 360, [0, 72, 144, 216, 288], atol=0.01)
+
+
+def test_light_vege_manager():
+    from sunfleck.caribu.lightvegemanager import LightVegeManager
+
+    here = {"coordinates": [45, 0, 0], "sky": [4, 5, "soc"]}
+    leaf = {7: [LOWER, BESIDE], "high": [[(0, 0, 1), (1, 0, 1), (0, 1, 1)]]}
+    dark_stem = {"scenes": [leaf], "domain": ((0, 0), (1, 1)), "stems id": [("high", 0)]}
+    light = LightVegeManager({**here, "direct": False}, "caribu", {"caribu opt": {"par": (0.1, 0.05), "nir": (0.4, 0.5)}})
+    light.build(dark_stem)
+    light.run(energy=500, day=172, hour=12)
+    organs, triangles = light.elements_outputs, light.triangles_outputs
+    assert list(organs["Organ"]) == [7, "high"] and list(triangles["Organ"]) == [0, 0, 1] and list(organs["Area"]) == [1, 0.5]
+    assert organs["par Ei"][1] == pytest.approx(500, rel=1e-5)  # a horizontal leaf under the whole sky
+    assert organs["par Eabs"][1] == pytest.approx(450, rel=1e-5) and organs["nir Eabs"][1] == pytest.approx(300, rel=1e-5)  # opaque
+    assert 0 < triangles["par Ei"][0] < 500 and triangles["par Eabs"][0] == pytest.approx(0.85 * triangles["par Ei"][0])
+    assert light.sensors_outputs() is None
+
+    # sun and sky are shared by Spitters' model, and a sun below two degrees gives nothing
+    both = LightVegeManager(here, "caribu", {"sensors": ["grid", [1, 1, 1], [1, 1, 2], [5, 5, 0]], "caribu opt": {"par": (0.1, 0.05)}})
+    both.build({"scenes": [[[(0, 0, 0), (1, 0, 0), (0, 1, 0)]], {1: [UPPER]}], "transformations": {"translate": {1: (9, 0, 0)}, "scenes unit": {1: "cm"}}}, 1)
+    both.run(energy=800, day=172, hour=12, truesolartime=True)
+    assert both.elements_outputs["par Ei"][0] == pytest.approx(800, rel=1e-5) and len(both.triangles_outputs) == 8
+    assert list(both.elements_outputs["VegetationType"]) == [0, 1] and both.elements_outputs["Area"][1] == pytest.approx(0.5e-4)
+    np.testing.assert_allclose(both.sun, [np.sin(np.radians(45 - 23.45)), 0, -np.cos(np.radians(45 - 23.45))], atol=5e-3)
+    frame = both.sensors_outputs(dataframe=True)
+    assert len(frame) == 2 and frame["PAR"].tolist() == pytest.approx([1, 1], rel=1e-5)
+    both.run(energy=800, day=172, hour=0, truesolartime=True)
+    assert both.elements_outputs["par Ei"][0] == pytest.approx(800, rel=1e-5)  # the sky alone
+    alone = LightVegeManager({**here, "diffus": False})
+    alone.build([LOWER])
+    alone.run(energy=800, day=172, hour=0, truesolartime=True)
+    assert alone.elements_outputs["par Ei"].tolist() == [0]
+
+    class Tree:  # as openalea.mtg.MTG keeps properties
+        kept: dict = {}
+        add_property = lambda self, name: self.kept.setdefault(name, {})  # noqa: E731
+        properties = property = lambda self, name=None: self.kept if name is None else self.kept[name]  # noqa: E731
+
+    light.to_MTG(energy=2, mtg=Tree())
+    assert Tree.kept["PARa"][7] == 2 * organs["par Eabs"][0] and Tree.kept["Erel"]["high"] == pytest.approx(0.9, rel=1e-5)
+
+    with pytest.raises(ValueError, match="lightmodel"):
+        LightVegeManager({}, "ratp")
+    with pytest.raises(ValueError, match="build"):
+        LightVegeManager().run()
+    with pytest.raises(ValueError, match="x\\+ = N"):
+        light.build({"scenes": [leaf], "transformations": {"xyz orientation": {0: "up"}}})
+    with pytest.raises(ValueError, match="voxels"):
+        light.build({"scenes": [{"LA": [], "distrib": []}]})

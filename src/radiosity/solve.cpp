@@ -46,7 +46,10 @@ class RadiositySolver {
     }
     Stopwatch watch;
     if (scatter) look_up_transport();
-    lit_.elements = kept_.found ? kept_.found->elements : make_elements(scene_, facets_, settings_);
+    if (kept_.found)
+      lit_.elements = kept_.found->elements;
+    else
+      lit_.elements = make_elements(scene_, facets_, settings_);
     release_pages(lit_.elements);
     timed("elements", watch);
     kept_.seconds = watch.seconds();

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from . import forms
 from .engine import Soil, area_of, light_of
@@ -48,7 +49,7 @@ def _run(triangles: Iterable[Any], materials: Mapping[str, Iterable[Any]], light
     return out
 
 
-def below(corners: np.ndarray) -> float:
+def below(corners: NDArray[np.float64]) -> float:
     """Just below the lowest point [m]."""
     if len(corners) == 0:
         return 0.0

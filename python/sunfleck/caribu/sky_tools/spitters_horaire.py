@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 # A table of CARIBU's: columns day, hour, global radiation, ... each a list that its name opens.
-Table = list[list[list]]
+Table = list[list[str]]
 
 
 def DecliSun(DOY: float) -> float:

@@ -6,8 +6,10 @@ import math
 
 from ..light import turtle as _turtle
 
+Floats = tuple[float, ...]
 
-def turtle(sectors: str | int = "46", format: str = "soc", energy: float = 1.0) -> tuple[tuple, tuple, tuple, tuple, tuple]:
+
+def turtle(sectors: str | int = "46", format: str = "soc", energy: float = 1.0) -> tuple[Floats, Floats, tuple[tuple[float, float, float], ...], Floats, Floats]:
     """(energies on a horizontal plane, energies across the direction, the ways that the light travels, elevations [degrees], azimuths [degrees
     from X, of the way that the light travels])."""
     sources = _turtle(sectors, format, energy)
