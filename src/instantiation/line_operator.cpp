@@ -97,7 +97,7 @@ LineOperator::LineOperator(const Elements& elements, const std::vector<std::uint
 void LineOperator::trace(const Elements& elements, const std::vector<std::uint8_t>& interior, const OperatorDensity& density,
                          std::uint64_t seed, Progress& progress, LineVisitor* visitor) {
   const Surface& surface = elements.surface;
-  const double pitch = std::sqrt(0.5 * elements.organ_area / density.lines_per_organ);
+  const double pitch = std::sqrt(0.5 * elements.patch_area / density.lines_per_organ);
   line_area = pitch * pitch;
   const std::size_t in_direction = std::size_t{pixels_} * pixels_;
   field_lines.assign(2 * directions_ * in_direction, 0.0f);

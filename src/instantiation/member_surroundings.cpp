@@ -12,7 +12,7 @@ MemberSurroundings::MemberSurroundings(const Members& members)
   for (std::size_t m = 0; m < maps_.size(); ++m) {
     const auto& e = members.original_of(m).elements;
     extent.add(maps_[m].point(e.surface.origin));
-    organ = std::min(organ, maps_[m].scale * std::sqrt(e.organ_area));
+    organ = std::min(organ, maps_[m].scale * std::sqrt(e.patch_area));
   }
   for (const auto& t : scene_.ground)
     for (const auto& p : t) extent.add(p);

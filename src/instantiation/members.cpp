@@ -70,12 +70,12 @@ OriginalLight original_light(const Scene& scene, const Approximation& approximat
   if (density.field_pixels < fewest_pixels_of_shades) settings.density.least_unevenness = std::numeric_limits<double>::infinity();
   out.elements = make_elements(own, facets, settings);
   out.facet_material = facets.optics;
-  const double pitch = std::sqrt(0.5 * out.elements.organ_area / finer / density.lines_per_organ);
+  const double pitch = std::sqrt(0.5 * out.elements.patch_area / finer / density.lines_per_organ);
   out.interior = interior_of_cells(out.elements, interior_sides(out.elements, pitch, seed, progress));
-  out.elements.organ_area /= finer;
+  out.elements.patch_area /= finer;
   // no one asks for these any more
   out.elements.tree = {};
-  out.elements.organ_of_row = {};
+  out.elements.patch_of_row = {};
   out.elements.first_cell = {};
   out.elements.cells = {};
   return out;
@@ -88,7 +88,7 @@ std::size_t OriginalLight::bytes() const {
 void OriginalLight::forget() {
   Elements left;
   left.surface.origin = elements.surface.origin;
-  left.organ_area = elements.organ_area;
+  left.patch_area = elements.patch_area;
   elements = std::move(left);
   interior = {};
   facet_material = {};

@@ -91,7 +91,7 @@ void show(Archive& a, Surface& s) {
 template <class Archive>
 void show(Archive& a, Elements& e) {
   show(a, e.order), show(a, e.plant_facets), show(a, e.surface), show(a, e.element_of_cell), show(a, e.row_of_cell);
-  show(a, e.area), show(a, e.material), show(a, e.organ_area), show(a, e.element_area);
+  show(a, e.area), show(a, e.material), show(a, e.patch_area), show(a, e.element_area);
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ double lowest_point(const Surface& s, const Similarity& map) {
 }  // namespace
 
 double own_sun_pitch(const OriginalLight& original, const Similarity& map, const InstantiationDensity& density) {
-  const double organ = original.elements.organ_area * map.scale * map.scale;
+  const double organ = original.elements.patch_area * map.scale * map.scale;
   return std::sqrt(0.5 * organ / (density.sun_lines_per_organ / density.sun_samples));
 }
 

@@ -8,12 +8,12 @@ namespace {
 
 constexpr std::size_t most_children = 4;
 
-/// A structure (or organ) on its way into the tree.
+/// A structure (or patch) on its way into the tree.
 struct Unit {
   Vec3 weighted_centroid{0.0};
   double area = 0;
   std::vector<std::uint32_t> children;  ///< units
-  std::uint32_t organ = no_parent;      ///< for units without children
+  std::uint32_t patch = no_parent;      ///< for units without children
 
   Vec3 centroid() const { return area > 0 ? weighted_centroid / area : weighted_centroid; }
 };
@@ -38,7 +38,7 @@ class TreeBuilder {
       // a chain of single children adds nothing
       while (members.size() == 1 && !units_[members[0]].children.empty()) members = units_[members[0]].children;
       if (members.size() == 1) {
-        out_.nodes[task.node].first_organ = units_[members[0]].organ;  // the organ itself; number_organs() turns it into a position
+        out_.nodes[task.node].first_patch = units_[members[0]].patch;  // the patch itself; number_patches() turns it into a position
         continue;
       }
       const auto parts = split(members);
@@ -52,7 +52,7 @@ class TreeBuilder {
       }
       for (std::size_t i = 0; i < parts.size(); ++i) tasks.push_back({first + static_cast<std::uint32_t>(i), parts[i]});
     }
-    number_organs();
+    number_patches();
   }
 
  private:
@@ -76,8 +76,8 @@ class TreeBuilder {
     return parts;
   }
 
-  /// Depth-first positions of organs.
-  void number_organs() {
+  /// Depth-first positions of patches.
+  void number_patches() {
     std::vector<std::uint32_t> stack{0};
     std::vector<std::uint32_t> order;
     while (!stack.empty()) {
@@ -90,16 +90,16 @@ class TreeBuilder {
     for (const auto i : order) {
       auto& node = out_.nodes[i];
       if (node.child_count > 0) continue;
-      const auto organ = node.first_organ;
-      node.first_organ = static_cast<std::uint32_t>(out_.organs.size());
-      node.organ_count = 1;
-      out_.organs.push_back(organ);
+      const auto patch = node.first_patch;
+      node.first_patch = static_cast<std::uint32_t>(out_.patches.size());
+      node.patch_count = 1;
+      out_.patches.push_back(patch);
     }
     for (std::size_t k = order.size(); k-- > 0;) {
       auto& node = out_.nodes[order[k]];
       if (node.child_count == 0) continue;
-      node.first_organ = out_.nodes[node.first_child].first_organ;
-      for (std::uint32_t c = 0; c < node.child_count; ++c) node.organ_count += out_.nodes[node.first_child + c].organ_count;
+      node.first_patch = out_.nodes[node.first_child].first_patch;
+      for (std::uint32_t c = 0; c < node.child_count; ++c) node.patch_count += out_.nodes[node.first_child + c].patch_count;
     }
   }
 
@@ -109,35 +109,25 @@ class TreeBuilder {
 
 }  // namespace
 
-ClusterOrder cluster_order(const Scene& scene, const FacetScene& facets) {
-  std::vector<Unit> units;
-  const std::size_t organ_count = facets.organs.size();
-  units.resize(organ_count);
-  for (std::size_t i = 0; i < organ_count; ++i) units[i].organ = static_cast<std::uint32_t>(i);
+ClusterOrder cluster_order(const Scene& scene, const FacetScene& facets, const Patches& patches) {
+  std::vector<Unit> units(patches.size());
+  for (std::size_t i = 0; i < units.size(); ++i) units[i].patch = static_cast<std::uint32_t>(i);
   for (std::size_t f = 0; f < facets.size(); ++f) {
-    auto& unit = units[facets.organ[f]];
+    auto& unit = units[patches.of_facet[f]];
     const auto& c = facets.corners[f];
     unit.weighted_centroid += static_cast<double>(facets.area[f]) * (c[0] + c[1] + c[2]) / 3.0;
     unit.area += facets.area[f];
   }
-  // organs of one copy are consecutive; their structures form its tree
   std::vector<std::uint32_t> plants, ground;
-  std::size_t first = 0, copy_index = 0;
-  const std::size_t plant_organs = facets.plant_facets > 0 ? facets.organ[facets.plant_facets - 1] + 1 : 0;
-  std::vector<std::size_t> organ_end(facets.copies.size(), 0);
-  for (const auto& shape : facets.shapes) {
-    const auto& plant = *scene.plants[shape.plant].plant;
-    if (plant.shapes[shape.shape].triangle_count > 0)
-      organ_end[shape.copy] = std::max<std::size_t>(organ_end[shape.copy], facets.organ[shape.first_facet] + 1);
-  }
-  for (; copy_index < facets.copies.size(); ++copy_index) {
-    const auto& plant = *scene.plants[facets.copy_plant[copy_index]].plant;
-    const std::size_t end = std::max(first, organ_end[copy_index]);
+  std::uint32_t first = 0;
+  for (std::size_t copy = 0; copy < facets.copies.size(); ++copy) {
+    const auto& plant = *scene.plants[facets.copy_plant[copy]].plant;
     const auto base = static_cast<std::uint32_t>(units.size());
     units.resize(units.size() + plant.structures.size());
     for (std::size_t s = plant.structures.size(); s-- > 1;)
       units[base + plant.structures[s].parent].children.push_back(base + static_cast<std::uint32_t>(s));
-    for (std::size_t o = first; o < end; ++o) units[base + facets.organs.structure[o]].children.push_back(static_cast<std::uint32_t>(o));
+    for (auto patch = first; patch < patches.end_of_copy[copy]; ++patch) units[base + patches.structure[patch]].children.push_back(patch);
+    first = patches.end_of_copy[copy];
     for (std::size_t s = plant.structures.size(); s-- > 0;) {
       auto& unit = units[base + s];
       std::erase_if(unit.children, [&](std::uint32_t c) { return c >= base && units[c].children.empty(); });
@@ -148,9 +138,8 @@ ClusterOrder cluster_order(const Scene& scene, const FacetScene& facets) {
       }
     }
     if (!units[base].children.empty()) plants.push_back(base);
-    first = end;
   }
-  for (std::size_t o = plant_organs; o < organ_count; ++o) ground.push_back(static_cast<std::uint32_t>(o));
+  for (auto patch = first; patch < patches.size(); ++patch) ground.push_back(patch);
   std::vector<std::uint32_t> roots;
   const auto add_root = [&](std::vector<std::uint32_t>& members) {
     if (members.empty()) return;

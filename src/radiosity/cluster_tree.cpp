@@ -16,22 +16,23 @@ std::size_t ClusterTree::bytes() const {
 ClusterTree make_cluster_tree(const FacetScene& facets, const Elements& e) {
   ClusterTree tree;
   const auto& nodes = e.tree.nodes;
-  std::vector<std::uint32_t> kept(nodes.size(), ClusterTree::none), cluster_of_organ(facets.organs.size(), 0);
+  std::vector<std::uint32_t> kept(nodes.size(), ClusterTree::none), cluster_of_patch(e.tree.patches.size(), 0);
   for (std::uint32_t i = 0; i < nodes.size(); ++i) {
     const auto up = nodes[i].parent;
-    const bool below_leaf = up != ClusterTree::none && (kept[up] == ClusterTree::none || nodes[up].organ_count <= organs_per_cluster);
+    const bool below_leaf = up != ClusterTree::none && (kept[up] == ClusterTree::none || nodes[up].patch_count <= patches_per_cluster);
     if (below_leaf) continue;
     kept[i] = static_cast<std::uint32_t>(tree.parent.size());
     tree.parent.push_back(up == ClusterTree::none ? ClusterTree::none : kept[up]);
     tree.depth.push_back(up == ClusterTree::none ? 0 : tree.depth[kept[up]] + 1);
-    if (nodes[i].organ_count <= organs_per_cluster || nodes[i].child_count == 0)
-      for (std::uint32_t k = 0; k < nodes[i].organ_count; ++k) cluster_of_organ[e.tree.organs[nodes[i].first_organ + k]] = kept[i];
+    if (nodes[i].patch_count <= patches_per_cluster || nodes[i].child_count == 0)
+      for (std::uint32_t k = 0; k < nodes[i].patch_count; ++k) cluster_of_patch[e.tree.patches[nodes[i].first_patch + k]] = kept[i];
   }
   std::vector<Box> box(tree.size());
   tree.albedo.assign(tree.size(), 0.0f);
-  for (std::size_t f = 0; f < facets.size(); ++f) {
+  for (std::size_t t = 0; t < e.order.size(); ++t) {
+    const auto f = e.order[t];
     if (facets.area[f] == 0.0f) continue;
-    const auto c = cluster_of_organ[facets.organ[f]];
+    const auto c = cluster_of_patch[e.patch_of_row[t]];
     for (const auto& p : facets.corners[f]) box[c].add(p);
     const auto& m = facets.materials[facets.optics[f]];
     for (std::size_t b = 0; b < facets.bands; ++b)
@@ -48,7 +49,7 @@ ClusterTree make_cluster_tree(const FacetScene& facets, const Elements& e) {
   tree.cluster_of_element.resize(e.size());
   tree.first_element.assign(tree.size() + 1, 0);
   for (std::size_t i = 0; i < e.size(); ++i) {
-    const auto c = cluster_of_organ[e.organ_of_row[e.row_of_cell[e.cells[e.first_cell[i]]]]];
+    const auto c = cluster_of_patch[e.patch_of_row[e.row_of_cell[e.cells[e.first_cell[i]]]]];
     tree.cluster_of_element[i] = c;
     ++tree.first_element[c + 1];
   }

@@ -25,15 +25,15 @@ constexpr double least_sun_slope = 1e-3;  // of the sun's lines in periodic scen
 constexpr std::uint32_t fewest_wide_samples = 128;  ///< of the disc of a wide sun
 
 /// Mean distance between lines so that an organ of the mean size meets `lines` of them (a leaf shows half its area on average).
-double pitch_for(double organ_area, double lines) {
-  return std::sqrt(0.5 * organ_area / lines);
+double pitch_for(double patch_area, double lines) {
+  return std::sqrt(0.5 * patch_area / lines);
 }
 
 /// Points of the sun's disc, each with a grid of its own: enough for the penumbrae, while some lines of each still meet every organ.
-std::uint32_t sun_samples(const Sun& sun, const Surface& surface, double organ_area, const RadiosityDensity& density) {
+std::uint32_t sun_samples(const Sun& sun, const Surface& surface, double patch_area, const RadiosityDensity& density) {
   constexpr double fewest_lines = 8.0;  ///< of one grid on an organ
   const auto most = static_cast<std::uint32_t>(density.sun_lines_per_organ / fewest_lines);
-  const auto wanted = sun_disc_points(sun, density.sun_samples, surface.longest_way(sun.direction), organ_area);
+  const auto wanted = sun_disc_points(sun, density.sun_samples, surface.longest_way(sun.direction), patch_area);
   return std::max(density.sun_samples, std::min(wanted, most));
 }
 
@@ -61,18 +61,18 @@ void fill_unsampled(const Elements& e, const std::vector<bool>& unsampled, std::
     double sum[2] = {0, 0};
     std::uint64_t known = 0;
   };
-  const auto organ_of = [&](std::size_t cell) { return e.organ_of_row[e.row_of_cell[cell]]; };
-  std::vector<Mean> organs(*std::max_element(e.organ_of_row.begin(), e.organ_of_row.end()) + std::size_t{1});
+  const auto patch_of = [&](std::size_t cell) { return e.patch_of_row[e.row_of_cell[cell]]; };
+  std::vector<Mean> patches(*std::max_element(e.patch_of_row.begin(), e.patch_of_row.end()) + std::size_t{1});
   for (std::size_t c = 0; c < unsampled.size(); ++c) {
     if (unsampled[c]) continue;
-    auto& mean = organs[organ_of(c)];
+    auto& mean = patches[patch_of(c)];
     ++mean.known;
     for (int side = 0; side < 2; ++side) mean.sum[side] += value[2 * c + side];
   }
   for (const auto i : missed)
     for (std::uint32_t k = e.first_cell[i]; k < e.first_cell[i + 1]; ++k) {
       const auto c = e.cells[k];
-      const auto& mean = organs[organ_of(c)];
+      const auto& mean = patches[patch_of(c)];
       if (mean.known > 0)
         for (int side = 0; side < 2; ++side) value[2 * c + side] = static_cast<float>(mean.sum[side] / static_cast<double>(mean.known));
     }
@@ -183,7 +183,7 @@ class DirectLightSolver {
       }
     }
     if (!below) many.below.clear();
-    const auto shares = share_seen(many, pitch_for(e_.organ_area, density.sky_lines_per_organ), mix(settings_.seed, sky_stream, 1), "sky");
+    const auto shares = share_seen(many, pitch_for(e_.patch_area, density.sky_lines_per_organ), mix(settings_.seed, sky_stream, 1), "sky");
     for (std::size_t k = 0; k < skies_.size(); ++k) {
       const OpenSky open(*skies_[k]);
       auto& sky = out_.sky.emplace_back(light_of_shares(shares[k], [&](const Vec3& normal) { return open.on(normal); }));
@@ -194,7 +194,7 @@ class DirectLightSolver {
   /// A disc so wide that surfaces may turn one side to a part of it and the other side to the rest.
   void wide_sun(const Sun& sun) {
     const auto& density = settings_.density;
-    const auto samples = std::max(fewest_wide_samples, sun_samples(sun, s_, e_.organ_area, density));
+    const auto samples = std::max(fewest_wide_samples, sun_samples(sun, s_, e_.patch_area, density));
     const auto seed = mix(settings_.seed, sun_stream);
     ManyDirections many;
     many.towards = sun_disc(sun, samples, seed);
@@ -204,7 +204,7 @@ class DirectLightSolver {
       if (d.z < 1e-3 && s_.periodic) d = glm::normalize(Vec3{d.x, d.y, 1e-3});
       facing += glm::dot(d, sun.direction);
     }
-    const auto shares = share_seen(many, pitch_for(e_.organ_area, density.sun_lines_per_organ / samples), mix(seed, 1), "sun");
+    const auto shares = share_seen(many, pitch_for(e_.patch_area, density.sun_lines_per_organ / samples), mix(seed, 1), "sun");
     const auto mean_of = [&](const Vec3& normal, auto&& value) {
       double sum = 0.0;
       for (const auto& d : many.towards) sum += value(glm::dot(normal, d));
@@ -320,8 +320,8 @@ class DirectLightSolver {
       cosine[t] =
           static_cast<float>(s_.normal[0][t] * sun.direction.x + s_.normal[1][t] * sun.direction.y + s_.normal[2][t] * sun.direction.z);
     if (sun.angular_diameter_deg > widest_narrow_sun_deg) return wide_sun(sun);
-    const auto samples = sun_samples(sun, s_, e_.organ_area, density);
-    const double pitch = pitch_for(e_.organ_area, density.sun_lines_per_organ / samples);
+    const auto samples = sun_samples(sun, s_, e_.patch_area, density);
+    const double pitch = pitch_for(e_.patch_area, density.sun_lines_per_organ / samples);
     const auto seed = mix(settings_.seed, sun_stream);
     const auto disc = sun_disc(sun, samples, seed);
     // a few samples at a time, for memory's sake; sums in the samples' order

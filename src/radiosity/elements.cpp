@@ -17,52 +17,47 @@ namespace sunfleck {
 
 namespace {
 
-/// So many times the middle organ is the mean at most: five walls over a hundred leaves do not make leaves parts of a wall.
-constexpr double most_middle_organs = 3.0;
-/// What large surfaces then take: the work of so many organs in all, or of so many for each that there is.
-constexpr double least_budget = 3'000.0, budget_per_organ = 4.0;
-/// Mean area of plant organs (of ground cells where no plant has an area; 1 where nothing has one: no line meets anything, however many
-/// there are), within the limits above [m^2]. The plain mean, not the area-weighted one: with lines
-/// of even density, N_o ~ A_o lines meet organ o, its squared error goes like 1 / A_o, and the area-weighted mean squared error like
-/// (number of organs) / (total area).
-double mean_organ_area(const FacetScene& facets, double fewest_organs) {
+/// So many times the middle patch is the mean at most: five walls over a hundred leaves do not make leaves parts of a wall.
+constexpr double most_middle_patches = 3.0;
+/// What large surfaces then take: the work of so many patches in all, or of so many for each that there is.
+constexpr double least_budget = 3'000.0, budget_per_patch = 4.0;
+/// Mean area of the plants' patches (of the ground's where no plant has an area; 1 where nothing has one: no line meets anything, however
+/// many there are), within the limits above [m^2]. Not the area-weighted one: with lines of even density, N ~ A lines meet a patch of
+/// area A, its squared error goes like 1 / A, and the area-weighted mean squared error like (number of patches) / (total area).
+double mean_patch_area(const FacetScene& facets, const Patches& patches, double fewest_organs) {
   const auto plants = facets.area.begin() + static_cast<std::ptrdiff_t>(facets.plant_facets);
   const bool any_plant = std::any_of(facets.area.begin(), plants, [](float area) { return area > 0.0f; });
   const std::size_t end = any_plant ? facets.plant_facets : facets.size();
-  std::vector<double> area(facets.organs.size(), 0.0);
-  for (std::size_t f = 0; f < end; ++f) area[facets.organ[f]] += facets.area[f];
-  area.erase(std::remove(area.begin(), area.end(), 0.0), area.end());
-  if (area.empty()) return 1.0;
-  const auto count = static_cast<double>(area.size());
-  const double sum = std::accumulate(area.begin(), area.end(), 0.0);
-  const auto middle = area.begin() + static_cast<std::ptrdiff_t>(area.size() / 2);
-  std::nth_element(area.begin(), middle, area.end());
-  return std::min(
-      {sum / count, sum / fewest_organs, std::max(most_middle_organs * *middle, sum / std::max(least_budget, budget_per_organ * count))});
+  std::vector<double> area(patches.size(), 0.0);
+  for (std::size_t f = 0; f < end; ++f) area[patches.of_facet[f]] += facets.area[f];
+  const auto all = patch_areas(std::move(area));
+  if (!(all.count > 0.0)) return 1.0;
+  return std::min({all.sum / all.count, all.sum / fewest_organs,
+                   std::max(most_middle_patches * all.middle, all.sum / std::max(least_budget, budget_per_patch * all.count))});
 }
 
 /// Leaves wider than their periodic cell lie many on each other: one value for a cell's width of them tells nothing of how light fades from
 /// one to the next [m^2]. Plants out of all proportion to the cell are a mistake of units, and are not worth the lines.
-double largest_periodic_element(double cell_area, double organ_area) {
+double largest_periodic_element(double cell_area, double patch_area) {
   constexpr double out_of_proportion = 16.0;
-  const double ratio = organ_area / cell_area;
+  const double ratio = patch_area / cell_area;
   return ratio > 1.0 && ratio <= out_of_proportion ? cell_area / (128.0 * ratio) : std::numeric_limits<double>::infinity();
 }
 
 /// Organs in tree order, but within small clusters those of one material together, so that small ones can share an element.
-std::vector<std::uint32_t> gather_materials(const ClusterOrder& tree, const std::vector<std::uint32_t>& material_of_organ) {
-  auto organs = tree.organs;
+std::vector<std::uint32_t> gather_materials(const ClusterOrder& tree, const std::vector<std::uint32_t>& material_of_patch) {
+  auto patches = tree.patches;
   std::vector<std::uint32_t> stack{0};
   while (!stack.empty()) {
     const auto& node = tree.nodes[stack.back()];
     stack.pop_back();
-    if (node.organ_count <= organs_sharing_elements)
-      std::stable_sort(organs.begin() + node.first_organ, organs.begin() + node.first_organ + node.organ_count,
-                       [&](std::uint32_t a, std::uint32_t b) { return material_of_organ[a] < material_of_organ[b]; });
+    if (node.patch_count <= patches_sharing_elements)
+      std::stable_sort(patches.begin() + node.first_patch, patches.begin() + node.first_patch + node.patch_count,
+                       [&](std::uint32_t a, std::uint32_t b) { return material_of_patch[a] < material_of_patch[b]; });
     else
       for (std::uint32_t c = 0; c < node.child_count; ++c) stack.push_back(node.first_child + c);
   }
-  return organs;
+  return patches;
 }
 
 /// Cells tell sunlit from shaded parts of an element apart, where it reflects the sun's light on.
@@ -136,7 +131,7 @@ struct OpenElement {
 }  // namespace
 
 std::size_t Elements::bytes() const {
-  return bytes_of(order) + surface.bytes() + bytes_of(element_of_cell) + bytes_of(row_of_cell) + bytes_of(organ_of_row) +
+  return bytes_of(order) + surface.bytes() + bytes_of(element_of_cell) + bytes_of(row_of_cell) + bytes_of(patch_of_row) +
          bytes_of(first_cell) + bytes_of(cells) + bytes_of(area) + bytes_of(material) + bytes_of(pieces.of_row) + bytes_of(pieces.corners) +
          piece_index.bytes();
 }
@@ -155,24 +150,24 @@ void list_cells(Elements& e) {
   for (std::uint32_t c = 0; c < e.cells.size(); ++c) e.cells[cursor[e.element_of_cell[c]]++] = c;
 }
 
-Elements gather_elements(const Scene& scene, const FacetScene& facets, bool flat, const ElementSizes& sizes,
+Elements gather_elements(const Scene& scene, const FacetScene& facets, const Patches& patches, bool flat, const ElementSizes& sizes,
                          const std::vector<std::uint16_t>& wanted_split) {
   Elements e;
   const std::size_t n = facets.size();
   e.plant_facets = facets.plant_facets;
-  e.organ_area = sizes.organ;
+  e.patch_area = sizes.patch;
   e.element_area = sizes.element;
-  e.tree = cluster_order(scene, facets);
-  // facets by organ, file order within
-  std::vector<std::uint32_t> start(facets.organs.size() + 1, 0), members(n), material_of_organ(facets.organs.size(), 0);
-  for (std::size_t f = 0; f < n; ++f) ++start[facets.organ[f] + 1];
+  e.tree = cluster_order(scene, facets, patches);
+  // facets by patch, file order within
+  std::vector<std::uint32_t> start(patches.size() + 1, 0), members(n), material_of_patch(patches.size(), 0);
+  for (std::size_t f = 0; f < n; ++f) ++start[patches.of_facet[f] + 1];
   for (std::size_t o = 0; o + 1 < start.size(); ++o) start[o + 1] += start[o];
   {
     auto cursor = start;
-    for (std::size_t f = 0; f < n; ++f) members[cursor[facets.organ[f]]++] = static_cast<std::uint32_t>(f);
+    for (std::size_t f = 0; f < n; ++f) members[cursor[patches.of_facet[f]]++] = static_cast<std::uint32_t>(f);
   }
-  for (std::size_t f = n; f-- > 0;) material_of_organ[facets.organ[f]] = facets.optics[f];
-  const auto organs = gather_materials(e.tree, material_of_organ);
+  for (std::size_t f = n; f-- > 0;) material_of_patch[patches.of_facet[f]] = facets.optics[f];
+  const auto in_order = gather_materials(e.tree, material_of_patch);
 
   const bool ground_is_flat = scene.ground && !scene.periodic && ground_is_level(facets);
   double plant_area = 0;
@@ -188,8 +183,8 @@ Elements gather_elements(const Scene& scene, const FacetScene& facets, bool flat
     split.push_back(cells);
     e.order.push_back(facet);
   };
-  for (const auto organ : organs)
-    for (std::uint32_t k = start[organ]; k < start[organ + 1]; ++k) {
+  for (const auto patch : in_order)
+    for (std::uint32_t k = start[patch]; k < start[patch + 1]; ++k) {
       const auto f = members[k];
       const bool wider_than_cell = facets.periodic && f < facets.plant_facets && facets.area[f] > 0.5 * facets.periodic->area();
       if (ground.cuts(f)) {
@@ -209,36 +204,36 @@ Elements gather_elements(const Scene& scene, const FacetScene& facets, bool flat
     }
   e.surface = make_surface(facets, e.order, split, e.pieces, ground_is_flat);
   const auto& s = e.surface;
-  e.organ_of_row.resize(s.size());
-  for (std::size_t t = 0; t < s.size(); ++t) e.organ_of_row[t] = facets.organ[e.order[t]];
+  e.patch_of_row.resize(s.size());
+  for (std::size_t t = 0; t < s.size(); ++t) e.patch_of_row[t] = patches.of_facet[e.order[t]];
   e.row_of_cell.resize(s.cells());
   for (std::uint32_t t = 0; t < s.size(); ++t)
     for (std::uint32_t c = s.first_cell[t]; c < s.first_cell[t + 1]; ++c) e.row_of_cell[c] = t;
 
   e.element_of_cell.resize(s.cells());
-  const double small = 0.5 * e.element_area;  // smaller organs share an element with neighbours of their material
+  const double small = 0.5 * e.element_area;  // smaller patches share an element with neighbours of their material
   OpenElement current;
   Box box;
   std::uint32_t row = 0;
-  for (const auto organ : organs) {
-    double organ_area = 0;
-    Box organ_box;
-    for (std::uint32_t k = start[organ]; k < start[organ + 1]; ++k) {
-      organ_area += facets.area[members[k]];
-      for (const auto& p : facets.corners[members[k]]) organ_box.add(p);
+  for (const auto patch : in_order) {
+    double patch_area = 0;
+    Box patch_box;
+    for (std::uint32_t k = start[patch]; k < start[patch + 1]; ++k) {
+      patch_area += facets.area[members[k]];
+      for (const auto& p : facets.corners[members[k]]) patch_box.add(p);
     }
-    const bool is_small = !flat && organ_area < small && start[organ] < start[organ + 1] && members[start[organ]] < facets.plant_facets;
+    const bool is_small = !flat && patch_area < small && start[patch] < start[patch + 1] && members[start[patch]] < facets.plant_facets;
     Box both = box;
-    both.add(organ_box);
+    both.add(patch_box);
     const bool joins = is_small && glm::length(both.size()) < 6.0 * std::sqrt(e.element_area);
     if (!joins) {
       current.open = false;
-      box = organ_box;
+      box = patch_box;
     } else {
       box = both;
     }
-    const double part_area = is_small ? e.element_area : organ_area / std::max(1.0, std::round(organ_area / e.element_area));
-    for (; row < s.size() && e.organ_of_row[row] == organ; ++row)
+    const double part_area = is_small ? e.element_area : patch_area / std::max(1.0, std::round(patch_area / e.element_area));
+    for (; row < s.size() && e.patch_of_row[row] == patch; ++row)
       for (std::uint32_t c = s.first_cell[row]; c < s.first_cell[row + 1]; ++c) {
         const auto material = facets.optics[e.order[row]];
         const bool fills_one = !e.pieces.of_row.empty() && e.order[row] >= e.plant_facets && s.cell_area[row] >= 0.999f * part_area;
@@ -260,12 +255,14 @@ Elements gather_elements(const Scene& scene, const FacetScene& facets, bool flat
 }
 
 Elements make_elements(const Scene& scene, const FacetScene& facets, const RadiositySettings& settings) {
-  const double organ = mean_organ_area(facets, settings.method == RadiosityMethod::flat ? 1.0 : settings.density.fewest_organs);
-  ElementSizes sizes{organ, organ / settings.density.elements_per_organ};
-  if (scene.periodic) sizes.element = std::min(sizes.element, largest_periodic_element(scene.periodic->area(), organ));
+  const Patches patches = find_patches(facets);
+  const double patch = mean_patch_area(facets, patches, settings.method == RadiosityMethod::flat ? 1.0 : settings.density.fewest_organs);
+  ElementSizes sizes{patch, patch / settings.density.elements_per_organ};
+  if (scene.periodic) sizes.element = std::min(sizes.element, largest_periodic_element(scene.periodic->area(), patch));
   PlantShades shades;
-  if (settings.method != RadiosityMethod::direct && anything_scatters(facets)) shades = plant_shades(scene, facets, settings, sizes);
-  Elements e = gather_elements(scene, facets, settings.method == RadiosityMethod::flat, sizes, splits(shades, facets.size()));
+  if (settings.method != RadiosityMethod::direct && anything_scatters(facets))
+    shades = plant_shades(scene, facets, patches, settings, sizes);
+  Elements e = gather_elements(scene, facets, patches, settings.method == RadiosityMethod::flat, sizes, splits(shades, facets.size()));
   part_elements(facets, shades, e);
   return e;
 }

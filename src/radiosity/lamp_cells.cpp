@@ -36,15 +36,15 @@ std::size_t LampIrradiance::bytes() const {
   return total;
 }
 
-std::uint32_t lamp_rays(double cell_area, double organ_area, const RadiosityDensity& density) {
-  return static_cast<std::uint32_t>(std::clamp(std::ceil(density.sun_lines_per_organ / 6.0 * cell_area / organ_area), 4.0, 4096.0));
+std::uint32_t lamp_rays(double cell_area, double patch_area, const RadiosityDensity& density) {
+  return static_cast<std::uint32_t>(std::clamp(std::ceil(density.sun_lines_per_organ / 6.0 * cell_area / patch_area), 4.0, 4096.0));
 }
 
 std::uint64_t lamp_rays(const Elements& e, const RadiosityDensity& density) {
   const auto& s = e.surface;
   std::uint64_t rays = 0;
   for (std::size_t t = 0; t < s.size(); ++t)
-    if (s.split[t] > 0) rays += std::uint64_t{s.first_cell[t + 1] - s.first_cell[t]} * lamp_rays(s.cell_area[t], e.organ_area, density);
+    if (s.split[t] > 0) rays += std::uint64_t{s.first_cell[t + 1] - s.first_cell[t]} * lamp_rays(s.cell_area[t], e.patch_area, density);
   return rays;
 }
 
@@ -66,7 +66,7 @@ LampIrradiance lamp_irradiance(const LampLight& lamps, const FacetScene& facets,
       for (std::size_t t = range.begin(); t < range.end(); ++t) {
         if (s.split[t] == 0 || progress.cancelled()) continue;
         const auto facet = e.order[t];
-        const auto rays = lamp_rays(s.cell_area[t], e.organ_area, settings.density);
+        const auto rays = lamp_rays(s.cell_area[t], e.patch_area, settings.density);
         const Triangle& given = e.pieces.corners_of(t, facets.corners[facet]);
         each_cell(facet < facets.plant_facets ? given : gap.lowered(given), s.split[t], [&](std::uint32_t number, const Patch& patch) {
           std::fill(light.begin(), light.end(), 0.0);

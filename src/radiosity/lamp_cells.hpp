@@ -23,7 +23,7 @@ struct LampIrradiance {
 
 /// Points, each with a shadow ray, that a cell gets: in proportion to its area, so that an organ of the mean size gets a sixth of the lines
 /// that sunlight takes (half in the shade, its light then comes to 3.4, 1.8 and 1 % at the three qualities), within [4, 4096].
-std::uint32_t lamp_rays(double cell_area, double organ_area, const RadiosityDensity& density);
+std::uint32_t lamp_rays(double cell_area, double patch_area, const RadiosityDensity& density);
 /// Over all cells.
 std::uint64_t lamp_rays(const Elements& elements, const RadiosityDensity& density);
 

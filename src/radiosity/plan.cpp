@@ -75,11 +75,11 @@ class Planner {
     if (skies_ > 0) {
       if (settings_.method == RadiosityMethod::direct || !anything_scatters(facets_))
         plan_.sky_fragments =
-            whole(projected_area(elements_, nullptr) * density.sky_directions * 2.0 * density.sky_lines_per_organ / elements_.organ_area);
+            whole(projected_area(elements_, nullptr) * density.sky_directions * 2.0 * density.sky_lines_per_organ / elements_.patch_area);
       values += (plan_.sky_fragments > 0 ? skies_ : skies_ + 1) * sides;
     }
     for (const auto* sun : sources.suns) {
-      plan_.sun_fragments += whole(projected_area(elements_, &sun->direction) * 2.0 * density.sun_lines_per_organ / elements_.organ_area);
+      plan_.sun_fragments += whole(projected_area(elements_, &sun->direction) * 2.0 * density.sun_lines_per_organ / elements_.patch_area);
       values += (sun->angular_diameter_deg > widest_narrow_sun_deg ? 2 : 1) * sides + elements_.surface.size();
     }
     sun_ = !sources.suns.empty();

@@ -53,23 +53,23 @@ class ShadeFinder {
 
   Shades find(const PlantEntry& plant, const Affine& map) const {
     const LonePlant alone(scene_, plant, map);
-    return find(alone.scene, alone.facets);
+    return find(alone.scene, alone.facets, find_patches(alone.facets));
   }
   /// The scene is one copy of one plant, and nothing else.
-  Shades find(const Scene& scene, const FacetScene& facets) const {
+  Shades find(const Scene& scene, const FacetScene& facets, const Patches& patches) const {
     constexpr std::uint32_t few_directions = 8, directions = 64;
     const bool flat = settings_.method == RadiosityMethod::flat;
-    const auto pitch = [&](double lines, std::uint32_t of) { return std::sqrt(0.5 * sizes_.organ * of / lines); };
+    const auto pitch = [&](double lines, std::uint32_t of) { return std::sqrt(0.5 * sizes_.patch * of / lines); };
     const double few = of_organ(std::max(fewest_pilot_lines, pilot_share * lines_));
-    if (few * sizes_.element < fewest_lines_of_element * sizes_.organ) return {};
+    if (few * sizes_.element < fewest_lines_of_element * sizes_.patch) return {};
     const auto coarse = splits_of(facets, 0.5 * sizes_.element);
     if (flat && std::all_of(coarse.begin(), coarse.end(), [](std::uint16_t k) { return k == 1; })) return {};  // elements of one cell
-    Elements elements = gather_elements(scene, facets, flat, sizes_, coarse);
+    Elements elements = gather_elements(scene, facets, patches, flat, sizes_, coarse);
     if (unevenness(facets, elements, few_directions, pitch(few, few_directions)) < settings_.density.least_unevenness) return {};
     const double lines = of_organ(std::max(fewest_shades_lines, shades_share * lines_));
-    const double cell = sizes_.organ * std::max(sun_lines_of_cell / settings_.density.sun_lines_per_organ, pilot_lines_of_cell / lines);
+    const double cell = sizes_.patch * std::max(sun_lines_of_cell / settings_.density.sun_lines_per_organ, pilot_lines_of_cell / lines);
     elements = {};
-    elements = gather_elements(scene, facets, flat, sizes_, splits_of(facets, cell));
+    elements = gather_elements(scene, facets, patches, flat, sizes_, splits_of(facets, cell));
     return find_shades(facets, elements, directions, pitch(lines, directions));
   }
 
@@ -90,7 +90,8 @@ class ShadeFinder {
 
 }  // namespace
 
-PlantShades plant_shades(const Scene& scene, const FacetScene& facets, const RadiositySettings& settings, const ElementSizes& sizes) {
+PlantShades plant_shades(const Scene& scene, const FacetScene& facets, const Patches& patches, const RadiositySettings& settings,
+                         const ElementSizes& sizes) {
   PlantShades out;
   out.of_copy.assign(facets.copies.size(), PlantShades::none);
   out.first_facet.assign(1, 0);
@@ -109,7 +110,7 @@ PlantShades plant_shades(const Scene& scene, const FacetScene& facets, const Rad
     for (auto f = first; f < out.first_facet.back(); ++f) area_once += facets.area[f];
   }
   if (!(area_once > 0.0)) return out;
-  const ShadeFinder finder(scene, settings, sizes, area_once / sizes.organ, plant_area(facets) / sizes.organ);
+  const ShadeFinder finder(scene, settings, sizes, area_once / sizes.patch, plant_area(facets) / sizes.patch);
   for (std::uint32_t c = 0; c < facets.copies.size(); ++c) {
     const auto first = first_copy.at(alike(c));
     if (first < c) {
@@ -119,7 +120,7 @@ PlantShades plant_shades(const Scene& scene, const FacetScene& facets, const Rad
     const auto area = std::accumulate(facets.area.begin() + out.first_facet[c], facets.area.begin() + out.first_facet[c + 1], 0.0);
     if (!(area > 0.0)) continue;
     const bool alone = facets.copies.size() == 1 && facets.plant_facets == facets.size() && !facets.periodic;
-    Shades shades = alone ? finder.find(scene, facets) : finder.find(scene.plants[facets.copy_plant[c]], facets.copies[c]);
+    Shades shades = alone ? finder.find(scene, facets, patches) : finder.find(scene.plants[facets.copy_plant[c]], facets.copies[c]);
     if (shades.empty()) continue;
     out.of_copy[c] = static_cast<std::uint32_t>(out.found.size());
     out.found.push_back(std::move(shades));

@@ -17,7 +17,8 @@ struct PlantShades {
 };
 
 /// Each plant alone, as its first copy stands: neighbours and the ground have no part in it.
-PlantShades plant_shades(const Scene& scene, const FacetScene& facets, const RadiositySettings& settings, const ElementSizes& sizes);
+PlantShades plant_shades(const Scene& scene, const FacetScene& facets, const Patches& patches, const RadiositySettings& settings,
+                         const ElementSizes& sizes);
 
 /// Cells along an edge of each facet, 0 where shades say nothing; empty if there are no shades.
 std::vector<std::uint16_t> splits(const PlantShades& shades, std::size_t facets);

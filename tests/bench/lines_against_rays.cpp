@@ -239,14 +239,14 @@ Absorbed solve(const Problem& p, const std::array<HalfLinks, 2>& half) {
     if (e.order[t] >= p.facets.plant_facets) continue;
     const double a = area_of(e, cell);
     const auto& m = p.facets.materials[p.facets.optics[e.order[t]]];
-    out.area[e.organ_of_row[t]] += a;
+    out.area[e.patch_of_row[t]] += a;
     for (std::uint32_t side = 0; side < 2; ++side)
       for (std::size_t band = 0; band < bands; ++band) {
         const double kept = 1.0 - static_cast<double>(side == 0 ? m.reflectance_front[band] : m.reflectance_back[band]) -
                             static_cast<double>(m.transmittance[band]);
         const double light = direct_on(p, cell, side, band) +
                              rest_on(p, cell, side) * static_cast<double>(gathered[(2 * e.element_of_cell[cell] + side) * bands + band]);
-        out.power[e.organ_of_row[t] * bands + band] += a * kept * light;
+        out.power[e.patch_of_row[t] * bands + band] += a * kept * light;
       }
   }
   return out;

@@ -12,23 +12,23 @@
 
 namespace sunfleck {
 
-/// Facets in the order of the cluster tree, cut into cells (large facets) and gathered into elements (small facets of one organ and
-/// one material; organs smaller than half an element share one with neighbours).
+/// Facets in the order of the cluster tree, cut into cells (large facets) and gathered into elements (small facets of one patch;
+/// patches smaller than half an element share one with neighbours of their material).
 struct Elements {
   std::vector<std::uint32_t> order;  ///< [rows] facet of each row of the surface; several rows, one after the other, if it is cut in pieces
   RowPieces pieces;                  ///< of facets of the ground
   GroundPieceIndex piece_index;      ///< rows of the pieces
   std::size_t plant_facets = 0;      ///< facets from here on are of the ground
-  ClusterOrder tree;                 ///< of organs
+  ClusterOrder tree;                 ///< of patches
   Surface surface;
   std::vector<std::uint32_t> element_of_cell;  ///< [cells]
-  std::vector<std::uint32_t> organ_of_row;     ///< [rows] row of FacetScene::organs
+  std::vector<std::uint32_t> patch_of_row;     ///< [rows] row of Patches
   std::vector<std::uint32_t> row_of_cell;      ///< [cells] row of the surface
   std::vector<std::uint32_t> first_cell;       ///< [elements + 1] into `cells`
   std::vector<std::uint32_t> cells;            ///< cells of each element
   std::vector<float> area;                     ///< [elements] one-sided [m^2]
   std::vector<std::uint32_t> material;         ///< [elements] row of FacetScene::materials
-  double organ_area = 0;                       ///< mean area of plant organs [m^2], the scale of all densities
+  double patch_area = 0;                       ///< mean area of plants' patches [m^2], the scale of all densities
   double element_area = 0;                     ///< area aimed at [m^2]
 
   std::size_t size() const { return area.size(); }
@@ -57,8 +57,8 @@ struct Elements {
   std::size_t bytes() const;
 };
 
-/// Method flat: one element a facet. Else facets of an organ are gathered, and large facets cut, to about the aimed element area, which is
-/// smaller where organs are wider than the periodic cell; flat ground is cut only near plants. Facets of the ground too wide for that, and
+/// Method flat: one element a facet. Else facets of a patch are gathered, and large facets cut, to about the aimed element area, which is
+/// smaller where patches are wider than the periodic cell; flat ground is cut only near plants. Facets of the ground too wide for that, and
 /// plants' facets wider than a fourth of a periodic cell, are cut with method flat too. Nothing here depends on the light.
 Elements make_elements(const Scene& scene, const FacetScene& facets, const RadiositySettings& settings);
 
