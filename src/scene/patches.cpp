@@ -13,10 +13,10 @@ namespace sunfleck {
 namespace {
 
 constexpr std::uint32_t none = 0xffffffffu;
-constexpr double same_place = 1e-6;       ///< of a plant's size
-constexpr double sharpest_fold = 0.55;    ///< cosine between two facets' ways from their edge: -1 is flat, 1 is folded back
-constexpr double counts_in_full = 0.2;   ///< of the middle one by width
-constexpr int most_at_an_edge = 16;       ///< where more meet, which go on in which is not asked
+constexpr double same_place = 1e-6;     ///< of a plant's size
+constexpr double sharpest_fold = 0.55;  ///< cosine between two facets' ways from their edge: -1 is flat, 1 is folded back
+constexpr double counts_in_full = 0.2;  ///< of the middle one by width
+constexpr int most_at_an_edge = 16;     ///< where more meet, which go on in which is not asked
 
 /// Open addressing; grows never: the number of keys is known beforehand.
 class Table {
@@ -54,7 +54,8 @@ std::vector<std::uint32_t> weld(std::span<const Triangle> facets) {
     for (const auto& p : t) {
       const Vec3 at = (p - box.low) / step;
       const Place place{std::llround(at.x), std::llround(at.y), std::llround(at.z)};
-      const auto hash = mix(mix(static_cast<std::uint64_t>(place.x), static_cast<std::uint64_t>(place.y)), static_cast<std::uint64_t>(place.z));
+      const auto hash =
+          mix(mix(static_cast<std::uint64_t>(place.x), static_cast<std::uint64_t>(place.y)), static_cast<std::uint64_t>(place.z));
       auto& slot = table.find(hash, [&](std::uint32_t i) { return places[i] == place; });
       if (slot == none) {
         slot = static_cast<std::uint32_t>(places.size());
