@@ -57,7 +57,8 @@ TEST_CASE("patches: facets joined by edges that fold little, corners by coordina
   const auto two = strip(2, 0);
   CHECK(patches_of_plant(two, Numbers{0, 0, 1, 1}) == Numbers{0, 0, 1, 1});  // materials
   // a corner in common joins nothing, nor does an edge of no length; far from the origin it is the same
-  const std::vector<Triangle> fan{{Vec3{0, 0, 0}, Vec3{1, 0, 0}, Vec3{0, 1, 0}}, {Vec3{0, 0, 0}, Vec3{-1, 0, 0}, Vec3{0, -1, 0}},
+  const std::vector<Triangle> fan{{Vec3{0, 0, 0}, Vec3{1, 0, 0}, Vec3{0, 1, 0}},
+                                  {Vec3{0, 0, 0}, Vec3{-1, 0, 0}, Vec3{0, -1, 0}},
                                   {Vec3{0, 0, 0}, Vec3{0, 0, 0}, Vec3{-1, 0, 0}}};
   CHECK(patches_of(fan)[0] != patches_of(fan)[1]);
   auto far = strip(4, 20);
