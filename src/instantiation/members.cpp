@@ -68,6 +68,7 @@ OriginalLight original_light(const Scene& scene, const Approximation& approximat
   settings.density.elements_per_organ = elements_per_organ * finer;
   settings.density.fewest_organs = 1.0;  // see times_finer()
   if (density.field_pixels < fewest_pixels_of_shades) settings.density.least_unevenness = std::numeric_limits<double>::infinity();
+  settings.density.sends_by_cell = false;  // operators hold counts of lines between elements
   out.elements = make_elements(own, facets, settings);
   out.facet_material = facets.optics;
   const double pitch = std::sqrt(0.5 * out.elements.patch_area / finer / density.lines_per_organ);

@@ -132,8 +132,8 @@ struct OpenElement {
 
 std::size_t Elements::bytes() const {
   return bytes_of(order) + surface.bytes() + bytes_of(element_of_cell) + bytes_of(row_of_cell) + bytes_of(patch_of_row) +
-         bytes_of(first_cell) + bytes_of(cells) + bytes_of(area) + bytes_of(material) + bytes_of(pieces.of_row) + bytes_of(pieces.corners) +
-         piece_index.bytes();
+         bytes_of(first_cell) + bytes_of(cells) + bytes_of(emission) + bytes_of(area) + bytes_of(material) + bytes_of(pieces.of_row) +
+         bytes_of(pieces.corners) + piece_index.bytes();
 }
 
 Elements::Place Elements::place_of(std::uint32_t first_row, double u, double v) const {
@@ -263,7 +263,7 @@ Elements make_elements(const Scene& scene, const FacetScene& facets, const Radio
   if (settings.method != RadiosityMethod::direct && anything_scatters(facets))
     shades = plant_shades(scene, facets, patches, settings, sizes);
   Elements e = gather_elements(scene, facets, patches, settings.method == RadiosityMethod::flat, sizes, splits(shades, facets.size()));
-  part_elements(facets, shades, e);
+  part_elements(facets, shades, settings.density.sends_by_cell, e);
   return e;
 }
 

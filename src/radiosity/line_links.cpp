@@ -23,6 +23,7 @@ namespace sunfleck {
 namespace {
 
 constexpr std::uint64_t line_stream = 0x9fb21c651e98df25ULL;
+constexpr std::uint64_t emission_stream = 0xd1b54a32d192ed03ULL;
 
 /// Collects DirectLines.
 class LineRecord {
@@ -109,6 +110,7 @@ class HalfBuilder {
     const std::size_t sides = 2 * e_.size();
     open_up_.assign(sides, 0.0f);
     open_down_.assign(sides, 0.0f);
+    if (!e_.emission.empty()) sent_up_.assign(sides, 0.0f), sent_down_.assign(sides, 0.0f), missing_.assign(sides, 0.0f);
     if (recorded_directions > 0) record_.emplace(e_, recorded_directions);
     if (count_cells && !record_) sky_ = SkySums(e_.surface.cells(), skies);
     if (!sun_.exitance.empty() && !record_) {
@@ -129,7 +131,10 @@ class HalfBuilder {
                const std::vector<LineSky>& skies) {
     std::vector<FarPair> far;
     for (std::size_t i = 0; i < lines.size(); ++i) {
-      add_hits(*lines[i]);
+      if (e_.emission.empty())
+        add_hits<false>(*lines[i], directions[i]);
+      else
+        add_hits<true>(*lines[i], directions[i]);
       if (!sky_.empty()) add_sky(*lines[i], skies[directions[i]]);
       if (record_)
         record_->add(*lines[i], directions[i], skies[directions[i]].weight);
@@ -148,12 +153,17 @@ class HalfBuilder {
   HalfLinks finish(std::size_t sides, const std::vector<std::uint32_t>& enclosed_part, HalfLight& light, DirectLines& direct) {
     HalfLinks half;
     const auto part_side = [&](std::uint32_t s) { return s & enclosed_bit ? 2 * enclosed_part[(s & ~enclosed_bit) >> 1] + (s & 1u) : s; };
-    half.open_up = std::move(open_up_);
-    half.open_down = std::move(open_down_);
-    half.open_up.resize(sides, 0.0f);
-    half.open_down.resize(sides, 0.0f);
-    for (const auto s : enclosed_up_) half.open_up[part_side(s)] += 1.0f;
-    for (const auto s : enclosed_down_) half.open_down[part_side(s)] += 1.0f;
+    const auto of_parts = [&](std::vector<float>& of_elements, const std::vector<std::uint32_t>& enclosed) {
+      of_elements.resize(sides, 0.0f);
+      for (const auto s : enclosed) of_elements[part_side(s)] += 1.0f;
+      return std::move(of_elements);
+    };
+    half.open_up = of_parts(open_up_, enclosed_up_);
+    half.open_down = of_parts(open_down_, enclosed_down_);
+    if (!e_.emission.empty()) {
+      half.sent_up = of_parts(sent_up_, enclosed_up_);
+      half.sent_down = of_parts(sent_down_, enclosed_down_);
+    }
     light.sky = std::move(sky_);
     light.first_reflection = std::move(reflection_);
     light.escaped_reflection = std::move(escaped_);
@@ -167,6 +177,7 @@ class HalfBuilder {
     for (std::size_t i = 0; i < sides; ++i) half.lines[i] = half.open_up[i] + half.open_down[i];
     for (const auto& p : enclosed_pairs_) near_.add(part_side(p.low), part_side(p.high));
     half.near = near_.finish(sides, half.lines);
+    for (std::size_t i = 0; i < missing_.size(); ++i) half.lines[i] += missing_[i];
     if (tree_) far_rows(half);
     return half;
   }
@@ -183,23 +194,49 @@ class HalfBuilder {
       open[side] += 1.0f;
   }
 
-  void add_hits(const DirectionLines& d) {
+  /// A line counts as often as the cell that it comes from sends out beside its element's mean, by chance rounded to a whole number;
+  /// and once for the row that it reaches.
+  void see(std::uint32_t row, std::uint32_t from, std::uint32_t cell_side, std::uint64_t draw) {
+    const double times = e_.emission[cell_side] / 32.0;
+    const auto whole = static_cast<int>(times + unit_interval(draw));
+    for (int k = 0; k < whole; ++k) near_.add_end(row, from);
+    missing_[row] += static_cast<float>(1 - whole);
+  }
+
+  template <bool Weighted>
+  void add_hits(const DirectionLines& d, [[maybe_unused]] std::uint32_t direction) {
+    const auto send = [&](std::size_t k, std::uint32_t sense) {
+      if constexpr (Weighted) {
+        const std::uint32_t side = d.side[k] ^ sense;
+        if (!(side & enclosed_bit)) (sense ? sent_down_ : sent_up_)[side] += e_.emission[d.cell_side[k] ^ sense] / 32.0f;
+      }
+    };
     for (std::size_t k = 0, n = d.side.size(); k < n; ++k) {
       if (d.link[k] == HitLink::lowest) {
         add_open(open_down_, enclosed_down_, d.side[k] ^ 1u);
+        send(k, 1u);
       } else if (d.link[k] == HitLink::near) {
         const std::uint32_t low = d.side[k - 1], high = d.side[k] ^ 1u;
         if ((low | high) & enclosed_bit)
           enclosed_pairs_.push_back({low, high});
-        else
+        else if constexpr (Weighted) {
+          const auto draw = mix(emission_stream, direction, k);
+          see(low, high, d.cell_side[k] ^ 1u, draw);
+          see(high, low, d.cell_side[k - 1], mix(draw));
+        } else {
           near_.add(low, high);
+        }
       }
-      if (k + 1 == n || d.link[k + 1] == HitLink::lowest) add_open(open_up_, enclosed_up_, d.side[k]);
+      if (k + 1 == n || d.link[k + 1] == HitLink::lowest) {
+        add_open(open_up_, enclosed_up_, d.side[k]);
+        send(k, 0u);
+      }
     }
     for (const auto& o : d.outside) {
       const std::uint32_t up = 2 * e_.element_of_cell[o.cell] + (o.front_up ? 0 : 1);
       open_up_[up] += o.lines;
       open_down_[up ^ 1u] += o.lines;
+      if constexpr (Weighted) sent_up_[up] += o.lines, sent_down_[up ^ 1u] += o.lines;
     }
   }
 
@@ -362,8 +399,8 @@ class HalfBuilder {
   std::vector<float> reflection_, withheld_;
   std::vector<double> escaped_;
   SkySums sky_;
-  std::vector<SidePair> enclosed_reflections_;  ///< row, and side of the cell that reflects
-  std::vector<float> open_up_, open_down_;
+  std::vector<SidePair> enclosed_reflections_;                              ///< row, and side of the cell that reflects
+  std::vector<float> open_up_, open_down_, sent_up_, sent_down_, missing_;  ///< the last: lines that links tell too few or too many of
   std::vector<std::uint32_t> enclosed_up_, enclosed_down_;
   NearBuilder near_;
   std::vector<SidePair> enclosed_pairs_;
@@ -413,7 +450,8 @@ bool clusters_pay(const std::vector<DirectionLines>& found) {
 
 std::size_t bytes_of_half(const HalfLinks& h) {
   return h.near.bytes() + bytes_of(h.far.of_side) + bytes_of(h.far.through) + bytes_of(h.far.linked) + bytes_of(h.far.first_link) +
-         bytes_of(h.far.links) + bytes_of(h.lines) + bytes_of(h.open_up) + bytes_of(h.open_down);
+         bytes_of(h.far.links) + bytes_of(h.lines) + bytes_of(h.open_up) + bytes_of(h.open_down) + bytes_of(h.sent_up) +
+         bytes_of(h.sent_down);
 }
 
 }  // namespace

@@ -45,6 +45,7 @@ struct HalfLinks {
   NearLinks near;
   FarField far;
   std::vector<float> lines, open_up, open_down;  ///< [sides]
+  std::vector<float> sent_up, sent_down;         ///< [sides] the same open ends, each counted by Elements::emission; empty = all alike
 };
 
 /// Rows are sides, 2 * part + (0 front, 1 back). Parts are the elements, followed by the *enclosed parts* of those elements that stick in

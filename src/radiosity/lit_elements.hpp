@@ -70,6 +70,7 @@ struct LitElements {
 struct ScatteredLight {
   Field gathered;                    ///< [2 * parts][columns] mean over what is not open sky
   std::vector<float> area;           ///< [parts] one-sided [m^2]
+  std::vector<float> rest_sent;      ///< [2 * parts] the same mean, each cell by Elements::emission; empty = mean_rest
   std::vector<float> mean_rest;      ///< [2 * parts] fraction of the hemisphere that is not open sky, area mean over the part's cells
   std::vector<std::uint32_t> whole;  ///< [parts] the element that a part belongs to
   std::vector<std::uint32_t> enclosed_part;  ///< [elements] as LineLinks

@@ -44,6 +44,7 @@ PartSources part_sources(const LitElements& lit, const LineLinks& links, const s
   }
   light.area.assign(sides / 2, 0.0f);
   light.mean_rest.assign(sides, 1.0f);
+  if (!e.emission.empty()) light.rest_sent.assign(sides, 1.0f);
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, e.size(), 256), [&](const auto& range) {
     for (std::size_t i = range.begin(); i < range.end(); ++i) {
       double area = 0, hidden = 0;
@@ -60,6 +61,13 @@ PartSources part_sources(const LitElements& lit, const LineLinks& links, const s
         double rest_of = 0;
         lit.for_cells(i, [&](std::size_t c, double a) { rest_of += a * (lit.rest(2 * c + row % 2) - light.enclosed_share(c)); });
         light.mean_rest[row] = static_cast<float>(rest_of / open);
+        if (!e.emission.empty()) {
+          double sent = 0;
+          lit.for_cells(i, [&](std::size_t c, double a) {
+            sent += a * (lit.rest(2 * c + row % 2) - light.enclosed_share(c)) * e.emission[2 * c + row % 2];
+          });
+          light.rest_sent[row] = static_cast<float>(sent / (32.0 * open));
+        }
         for (std::size_t h = 0; h < 2; ++h) {
           const auto& half = links.half[h];
           double lines = 0;

@@ -24,19 +24,6 @@ struct Met {
   std::vector<std::uint32_t> open;  ///< sides
 };
 
-/// Optics in the band that scatters most.
-struct Brightest {
-  float front = 0, back = 0, through = 0;
-  explicit Brightest(const Optics& m) {
-    for (std::size_t b = 0; b < m.transmittance.size(); ++b)
-      if (m.reflectance_front[b] + m.reflectance_back[b] + 2 * m.transmittance[b] > front + back + 2 * through) {
-        front = m.reflectance_front[b];
-        back = m.reflectance_back[b];
-        through = m.transmittance[b];
-      }
-  }
-};
-
 }  // namespace
 
 PilotLight pilot_light(const FacetScene& facets, const Elements& e, std::uint32_t directions, double pitch, int reflections) {
@@ -88,7 +75,8 @@ PilotLight pilot_light(const FacetScene& facets, const Elements& e, std::uint32_
         out.sum[high] += radiosity[low];
       }
   }
-  out.squares = std::move(open);
+  out.squares = open;
+  out.open = std::move(open);
   for (const auto& m : met)
     for (const auto& [low, high] : m.meetings) {
       out.squares[low] += radiosity[high] * radiosity[high];

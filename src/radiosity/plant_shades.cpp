@@ -16,9 +16,14 @@ constexpr double fewest_pilot_lines = 5e4;        ///< cost nothing
 constexpr double fewest_lines_of_element = 15.0;  ///< of a pilot: fewer tell nothing, and are not traced
 constexpr double fewest_shades_lines = 1.5e6;
 constexpr double most_lines_of_organ = 12800.0;  ///< beyond them, cells of a shade could not be told apart anyway
-constexpr double sun_lines_of_cell = 12.0;       ///< facing the sun: smaller cells would be met by none too often
-constexpr double pilot_lines_of_cell = 4.0;
 constexpr long most_shades_split = 32;
+
+/// Fewest lines that meet a cell which faces the sun, and of the pilot: smaller ones would be met by none too often, but that matters less
+/// where each sends out what it has.
+struct CellLines {
+  double sun, pilot;
+};
+constexpr CellLines cells_send{3.0, 1.0}, elements_send{12.0, 4.0};
 
 /// A plant by itself, as one of its copies stands.
 struct LonePlant {
@@ -67,7 +72,8 @@ class ShadeFinder {
     Elements elements = gather_elements(scene, facets, patches, flat, sizes_, coarse);
     if (unevenness(facets, elements, few_directions, pitch(few, few_directions)) < settings_.density.least_unevenness) return {};
     const double lines = of_organ(std::max(fewest_shades_lines, shades_share * lines_));
-    const double cell = sizes_.patch * std::max(sun_lines_of_cell / settings_.density.sun_lines_per_organ, pilot_lines_of_cell / lines);
+    const CellLines& fewest = settings_.density.sends_by_cell ? cells_send : elements_send;
+    const double cell = sizes_.patch * std::max(fewest.sun / settings_.density.sun_lines_per_organ, fewest.pilot / lines);
     elements = {};
     elements = gather_elements(scene, facets, patches, flat, sizes_, splits_of(facets, cell));
     return find_shades(facets, elements, directions, pitch(lines, directions));
@@ -137,7 +143,40 @@ std::vector<std::uint16_t> splits(const PlantShades& shades, std::size_t facets)
   return out;
 }
 
-void part_elements(const FacetScene& facets, const PlantShades& shades, Elements& e) {
+namespace {
+
+/// What each cell sends out beside the mean of its element.
+void weigh_emission(const PlantShades& shades, const std::vector<std::uint32_t>& copy_of_facet, Elements& e) {
+  constexpr double as_much = 32.0;
+  const auto& s = e.surface;
+  e.emission.assign(2 * s.cells(), static_cast<std::uint8_t>(as_much));
+  for (std::size_t i = 0; i < e.size(); ++i) {
+    const auto sent = [&](std::uint32_t c, std::size_t side) {
+      const auto t = e.row_of_cell[c];
+      const auto copy = copy_of_facet[e.order[t]];
+      return static_cast<double>(
+          shades.found[shades.of_copy[copy]].emission_at(e.order[t] - shades.first_facet[copy], c - s.first_cell[t], side));
+    };
+    const auto facet = e.order[e.row_of_cell[e.cells[e.first_cell[i]]]];
+    if (facet >= copy_of_facet.size() || shades.of_copy[copy_of_facet[facet]] == PlantShades::none) continue;
+    for (std::size_t side = 0; side < 2; ++side) {
+      double sum = 0, area = 0;
+      for (auto k = e.first_cell[i]; k < e.first_cell[i + 1]; ++k) {
+        const auto t = e.row_of_cell[e.cells[k]];
+        const double a = s.split[t] > 0 ? static_cast<double>(s.cell_area[t]) : 0.0;
+        sum += a * sent(e.cells[k], side), area += a;
+      }
+      if (!(sum > 0.0)) continue;
+      for (auto k = e.first_cell[i]; k < e.first_cell[i + 1]; ++k)
+        e.emission[2 * e.cells[k] + side] =
+            static_cast<std::uint8_t>(std::clamp(std::lround(as_much * sent(e.cells[k], side) * area / sum), 1L, 255L));
+    }
+  }
+}
+
+}  // namespace
+
+void part_elements(const FacetScene& facets, const PlantShades& shades, bool weighed, Elements& e) {
   if (shades.found.empty()) return;
   const auto& s = e.surface;
   std::vector<std::uint16_t> shade(s.cells(), 0);
@@ -171,6 +210,7 @@ void part_elements(const FacetScene& facets, const PlantShades& shades, Elements
   e.area = std::move(area);
   e.material = std::move(material);
   list_cells(e);
+  if (weighed) weigh_emission(shades, copy_of_facet, e);
 }
 
 }  // namespace sunfleck

@@ -23,7 +23,7 @@ PlantShades plant_shades(const Scene& scene, const FacetScene& facets, const Pat
 /// Cells along an edge of each facet, 0 where shades say nothing; empty if there are no shades.
 std::vector<std::uint16_t> splits(const PlantShades& shades, std::size_t facets);
 
-/// Cells of one element that are of different shades become elements of their own.
-void part_elements(const FacetScene& facets, const PlantShades& shades, Elements& elements);
+/// Cells of one element that are of different shades become elements of their own; `weighed`: with Elements::emission.
+void part_elements(const FacetScene& facets, const PlantShades& shades, bool weighed, Elements& elements);
 
 }  // namespace sunfleck

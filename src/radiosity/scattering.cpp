@@ -59,8 +59,13 @@ class Exchange {
       for (std::size_t i = 0; i < sides; ++i) {
         const float rest = light.mean_rest[i];
         if (sky_known) sky_lines[i] = half.open_up[i] + (sky_below ? half.open_down[i] : 0.0f);
-        const float left = half.lines[i] - sky_lines[i], open = half.open_up[i] + half.open_down[i] - sky_lines[i];
-        escape_[h][i] = 1.0f - rest + (left > 0.0f ? rest * open / left : 0.0f);
+        const float left = half.lines[i] - sky_lines[i];
+        float open = half.open_up[i] + half.open_down[i] - sky_lines[i], sent = rest;
+        if (!half.sent_up.empty()) {
+          open = (sky_known ? 0.0f : half.sent_up[i]) + (sky_known && sky_below ? 0.0f : half.sent_down[i]);
+          sent = std::min(1.0f, light.rest_sent[i]);
+        }
+        escape_[h][i] = 1.0f - sent + (left > 0.0f ? rest * open / left : 0.0f);
       }
       gather_.emplace_back(half, tree, sky_lines, columns_, cluster_fields_);
     }
@@ -227,7 +232,7 @@ ScatteredLight solve_scattering(LitElements& lit, const RadiositySettings& setti
   watch = {};
   Exchange exchange(lit, links, along, tree ? &*tree : nullptr, light, std::move(sources));
   if (!links.recorded())
-    for (auto& half : made->links.half) half.lines = half.open_up = half.open_down = {};
+    for (auto& half : made->links.half) half.lines = half.open_up = half.open_down = half.sent_up = half.sent_down = {};
   const double tolerance = settings.tolerance > 0 ? settings.tolerance : settings.density.tolerance;
   const auto result = exchange.iterate(tolerance, largest_albedo(lit.facets), progress);
   for (std::size_t k = 0; k < result.residuals.size(); ++k)

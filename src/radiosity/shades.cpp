@@ -21,11 +21,12 @@ constexpr int reflections = 12;        ///< what later ones add hardly changes w
 
 /// Sums over cells: front and back.
 struct Sums {
-  double lines[2] = {0, 0}, light[2] = {0, 0};
+  double lines[2] = {0, 0}, light[2] = {0, 0}, open[2] = {0, 0};
   void add(const PilotLight& pilot, std::uint32_t cell) {
     for (std::size_t side = 0; side < 2; ++side) {
       lines[side] += pilot.lines[2 * std::size_t{cell} + side];
       light[side] += pilot.sum[2 * std::size_t{cell} + side];
+      open[side] += pilot.open[2 * std::size_t{cell} + side];
     }
   }
   bool enough() const { return lines[0] >= fewest_lines && lines[1] >= fewest_lines; }
@@ -172,16 +173,23 @@ class Cutter {
   std::vector<Eigen::Vector3d> centre_;
 };
 
+/// The mean of its shade speaks for a cell as so many lines do.
+constexpr float lines_of_doubt = 1.0f;
+/// Of what comes straight: the sun's light is followed from the cells themselves, and what is left is less uneven than light from all
+/// round.
+constexpr float straight_left_out = 0.35f;
+
 struct ShadesOfCells {
+  PilotLight pilot;
   std::vector<std::uint16_t> shade;  ///< [cells]
   std::vector<double> removed;       ///< [elements] variance x area that shades take away
 };
 
 ShadesOfCells shades_of_cells(const FacetScene& facets, const Elements& e, std::uint32_t directions, double pitch, int followed,
                               double least) {
-  const PilotLight pilot = pilot_light(facets, e, directions, pitch, followed);
-  ShadesOfCells out{std::vector<std::uint16_t>(e.surface.cells(), 0), std::vector<double>(e.size())};
-  const Cutter cutter(e, pilot, least);
+  ShadesOfCells out{pilot_light(facets, e, directions, pitch, followed), std::vector<std::uint16_t>(e.surface.cells(), 0),
+                    std::vector<double>(e.size())};
+  const Cutter cutter(e, out.pilot, least);
   tbb::parallel_for(std::size_t{0}, e.size(), [&](std::size_t i) { out.removed[i] = cutter.cut(i, out.shade); });
   return out;
 }
@@ -194,12 +202,45 @@ double unevenness(const FacetScene& facets, const Elements& e, std::uint32_t dir
   return area > 0.0 ? std::accumulate(removed.begin(), removed.end(), 0.0) / area : 0.0;
 }
 
+namespace {
+
+/// Exitance of each side of each cell, [2 * cells]: of few lines, and what the mean of its shade adds to them.
+std::vector<float> exitance(const FacetScene& facets, const Elements& e, const PilotLight& pilot, const std::vector<std::uint16_t>& shade) {
+  std::vector<float> out(pilot.sum.size(), 0.0f);
+  tbb::parallel_for(std::size_t{0}, e.size(), [&](std::size_t i) {
+    std::vector<Sums> of_shade;
+    for (auto k = e.first_cell[i]; k < e.first_cell[i + 1]; ++k) {
+      const auto c = e.cells[k];
+      if (of_shade.size() <= shade[c]) of_shade.resize(shade[c] + std::size_t{1});
+      of_shade[shade[c]].add(pilot, c);
+    }
+    for (auto k = e.first_cell[i]; k < e.first_cell[i + 1]; ++k) {
+      const auto c = e.cells[k];
+      const auto& all = of_shade[shade[c]];
+      const Brightest optics(facets.materials[facets.optics[e.order[e.row_of_cell[c]]]]);
+      float light[2];
+      for (std::size_t side = 0; side < 2; ++side) {
+        const auto mean = static_cast<float>((all.light[side] - straight_left_out * all.open[side]) / std::max(all.lines[side], 1.0));
+        light[side] = (pilot.sum[2 * c + side] - straight_left_out * pilot.open[2 * c + side] + lines_of_doubt * mean) /
+                      (pilot.lines[2 * c + side] + lines_of_doubt);
+      }
+      out[2 * c] = optics.front * light[0] + optics.through * light[1];
+      out[2 * c + 1] = optics.back * light[1] + optics.through * light[0];
+    }
+  });
+  return out;
+}
+
+}  // namespace
+
 Shades find_shades(const FacetScene& facets, const Elements& e, std::uint32_t directions, double pitch) {
-  const auto shade = shades_of_cells(facets, e, directions, pitch, reflections, least_gain).shade;
+  const auto found = shades_of_cells(facets, e, directions, pitch, reflections, least_gain);
+  const auto& shade = found.shade;
   if (std::all_of(shade.begin(), shade.end(), [](std::uint16_t k) { return k == 0; })) return {};
   const auto& s = e.surface;
   std::vector<std::uint32_t> row_of_facet(s.size());
   for (std::uint32_t t = 0; t < s.size(); ++t) row_of_facet[e.order[t]] = t;
+  const auto sent = exitance(facets, e, found.pilot, shade);
   Shades out;
   out.split.assign(s.size(), 0);
   out.first_cell.assign(1, 0);
@@ -209,6 +250,16 @@ Shades find_shades(const FacetScene& facets, const Elements& e, std::uint32_t di
     const bool cut = !std::equal(first + 1, last, first);
     if (cut) out.split[f] = s.split[t];
     out.of_cell.insert(out.of_cell.end(), first, cut ? last : first + 1);
+    const auto begin = s.first_cell[t], end = s.first_cell[t + 1];
+    if (cut) {
+      out.emission.insert(out.emission.end(), sent.begin() + 2 * std::ptrdiff_t{begin}, sent.begin() + 2 * std::ptrdiff_t{end});
+    } else {  // cells of a facet are equally large
+      for (std::size_t side = 0; side < 2; ++side) {
+        float sum = 0;
+        for (auto c = begin; c < end; ++c) sum += sent[2 * c + side];
+        out.emission.push_back(sum / static_cast<float>(end - begin));
+      }
+    }
     out.first_cell.push_back(static_cast<std::uint32_t>(out.of_cell.size()));
   }
   return out;

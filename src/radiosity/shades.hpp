@@ -14,8 +14,14 @@ struct Shades {
   std::vector<std::uint32_t> first_cell;  ///< [facets + 1] into `of_cell`; one for each facet that is not cut
   std::vector<std::uint16_t> of_cell;     ///< number of the shade within its element, from the darkest to the brightest
 
+  std::vector<float> emission;  ///< [2 * of_cell] (front, back) exitance in light from all round, relative to a source in the open
+
   bool empty() const { return of_cell.empty(); }
-  std::uint16_t at(std::size_t facet, std::uint32_t cell) const { return of_cell[first_cell[facet] + (split[facet] == 0 ? 0 : cell)]; }
+  std::uint16_t at(std::size_t facet, std::uint32_t cell) const { return of_cell[place(facet, cell)]; }
+  float emission_at(std::size_t facet, std::uint32_t cell, std::size_t side) const { return emission[2 * place(facet, cell) + side]; }
+
+ private:
+  std::size_t place(std::size_t facet, std::uint32_t cell) const { return first_cell[facet] + (split[facet] == 0 ? 0 : cell); }
 };
 
 /// Variance within elements of the light on both sides that shades would tell apart, relative to light in the open, mean over the area:

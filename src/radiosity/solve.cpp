@@ -22,7 +22,7 @@ namespace {
 void put_density(ContentKey& key, const RadiosityDensity& d) {
   key.put(d.directions), key.put(d.lines_per_element), key.put(d.elements_per_organ), key.put(d.sky_directions);
   key.put(d.sky_lines_per_organ), key.put(d.sun_samples), key.put(d.sun_lines_per_organ), key.put(d.link_error), key.put(d.tolerance);
-  key.put(d.fewest_hits), key.put(d.fewest_organs), key.put(d.least_unevenness);
+  key.put(d.fewest_hits), key.put(d.fewest_organs), key.put(d.least_unevenness), key.put(d.sends_by_cell);
 }
 
 class RadiositySolver {

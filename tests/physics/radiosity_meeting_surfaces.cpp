@@ -1,6 +1,7 @@
 // Where surfaces meet and cut through each other, light falls off within what else were one element; judged by path tracing.
 #include <catch2/catch.hpp>
 
+#include <array>
 #include <cmath>
 #include <numeric>
 
@@ -39,8 +40,8 @@ double total(const Run& run, std::size_t band) {
 TEST_CASE("meeting surfaces: a tuft of grass keeps what path tracing says", "[radiosity]") {
   const auto scene = tuft();
   const auto truth = reference_runs::trace(scene, 4096);
-  const double limits[2] = {0.02, 0.025};  // without shades 10 % and more in N
-  const auto check = [&](const Run& run) {
+  // without shades 10 % and more in N; instantiation does not send by cells
+  const auto check = [&](const Run& run, std::array<double, 2> limits) {
     for (std::size_t band = 0; band < 2; ++band) {
       const double bias = total(run, band) / total(truth, band) - 1;
       CAPTURE(band, bias);
@@ -49,7 +50,7 @@ TEST_CASE("meeting surfaces: a tuft of grass keeps what path tracing says", "[ra
   };
   for (const auto method : both_methods) {
     CAPTURE(name_of(method));
-    check(solve(scene, method));
+    check(solve(scene, method), {0.01, 0.015});
   }
   FacetScene facets = expand(scene);
   Kept kept(scene.states.size(), facets.size(), scene.band_count());
@@ -57,5 +58,5 @@ TEST_CASE("meeting surfaces: a tuft of grass keeps what path tracing says", "[ra
   settings.density = instantiation_density(Quality::standard);
   auto report = solve_instantiation(scene, place(scene), settings, kept, silent());
   CAPTURE("instantiation");
-  check({std::move(facets), std::move(kept), std::move(report)});
+  check({std::move(facets), std::move(kept), std::move(report)}, {0.02, 0.025});
 }

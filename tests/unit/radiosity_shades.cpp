@@ -51,6 +51,18 @@ TEST_CASE("shades: where leaves meet, elements are parted by how bright they are
   CHECK(area == Approx(before).epsilon(1e-5));
   CHECK(*std::max_element(e.element_of_cell.begin(), e.element_of_cell.end()) + 1 == e.size());
   CHECK(e.first_cell.back() == e.surface.cells());
+  // cells send out as bright as they are, elements as much as without: 32 is the mean by area
+  REQUIRE(e.emission.size() == 2 * e.surface.cells());
+  CHECK(plain.emission.empty());
+  CHECK(*std::min_element(e.emission.begin(), e.emission.end()) < 24);
+  for (std::size_t side = 0; side < 2; ++side) {
+    double sent = 0, all = 0;
+    for (std::size_t c = 0; c < e.surface.cells(); ++c) {
+      sent += e.surface.cell_area[e.row_of_cell[c]] * e.emission[2 * c + side];
+      all += 32.0 * e.surface.cell_area[e.row_of_cell[c]];
+    }
+    CHECK(sent == Approx(all).epsilon(0.01));
+  }
 }
 
 TEST_CASE("shades: leaves apart from each other stay as they were", "[shades]") {

@@ -28,8 +28,11 @@ struct Elements {
   std::vector<std::uint32_t> cells;            ///< cells of each element
   std::vector<float> area;                     ///< [elements] one-sided [m^2]
   std::vector<std::uint32_t> material;         ///< [elements] row of FacetScene::materials
-  double patch_area = 0;                       ///< mean area of plants' patches [m^2], the scale of all densities
-  double element_area = 0;                     ///< area aimed at [m^2]
+  /// [2 * cells] (front, back) how much a cell sends out beside the mean of its element, 32 = as much; empty = all do. Where light falls
+  /// off within an element, what sees its dark end gets less.
+  std::vector<std::uint8_t> emission;
+  double patch_area = 0;    ///< mean area of plants' patches [m^2], the scale of all densities
+  double element_area = 0;  ///< area aimed at [m^2]
 
   std::size_t size() const { return area.size(); }
   /// The row and cell of a point of a facet, whose first row is given; u, v as in RayHit.

@@ -32,6 +32,7 @@ struct RadiosityDensity {
   double fewest_organs = 1.0;        ///< that are reckoned with: few names are no reason for large elements; not by method flat [-]
   double least_unevenness =
       3e-3;  ///< of light within elements, from which on plants are cut by shades, see unevenness(); infinite: not looked for [-]
+  bool sends_by_cell = true;  ///< where there are shades, scattered light leaves their cells as those are bright (Elements::emission)
 };
 RadiosityDensity density_of(Quality quality);
 
