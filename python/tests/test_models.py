@@ -111,10 +111,11 @@ def test_crowded_trees_are_slender_and_shed(alone):
 
 
 def test_stands_thin_themselves():
-    dense, thin = poplar.stand(25, 1.1, 10), poplar.stand(4, 1.1, 8)
+    dense, thin = poplar.stand(25, 1.1, 13), poplar.stand(4, 1.1, 8)
     assert len(dense.trees) <= 18 and len(thin.trees) == 4
     assert thin.history[-1].mean_mass > 2 * dense.history[7].mean_mass
-    assert -2.0 < poplar.slope(poplar.thinning_points([dense]))[0] < -1.0
+    # from six steps each of two stands; from three of one, as many as ten steps leave, it is anything between -.9 and -4
+    assert -1.8 < poplar.slope(poplar.thinning_points([dense, poplar.stand(25, 1.1, 13, seed=2)]))[0] < -1.0
     assert len(poplar.stand(25, 1.1, 7, feedback=False).trees) == 25
     with pytest.raises(ValueError, match="count: found 5; expected a square number"):
         poplar.stand(5, 1.0, 1)
