@@ -14,6 +14,7 @@
 #include <sunfleck/format/scene_toml.hpp>
 #include <sunfleck/plant/build.hpp>
 #include <sunfleck/scene/build.hpp>
+#include <sunfleck/scene/slope.hpp>
 
 #include "arrays.hpp"
 
@@ -316,7 +317,23 @@ void bind_scene(py::module_& m) {
               throw py::value_error(
                   fmt::format("periodic: found ({}, {}, {}, {}); expected xmin, ymin, xmax, ymax [m], xmax above xmin and ymax above ymin",
                               c[0], c[1], c[2], c[3]));
-            s.scene.periodic = PeriodicCell{c[0], c[1], c[2], c[3]};
+            const double slope[2] = {s.scene.periodic ? s.scene.periodic->slope_x : 0.0,
+                                     s.scene.periodic ? s.scene.periodic->slope_y : 0.0};
+            s.scene.periodic = PeriodicCell{c[0], c[1], c[2], c[3], slope[0], slope[1]};
+          })
+      .def_property(
+          "slope",
+          [](const SceneInMemory& s) {
+            const PeriodicCell cell = s.scene.periodic.value_or(PeriodicCell{});
+            return std::make_tuple(cell.slope_x, cell.slope_y);
+          },
+          [](SceneInMemory& s, const std::array<double, 2>& rise) {
+            if (!(std::hypot(rise[0], rise[1]) <= steepest_slope))
+              throw py::value_error(fmt::format("slope: found ({}, {}); expected dz/dx and dz/dy of a slope of at most {:g}", rise[0],
+                                                rise[1], steepest_slope));
+            if (!s.scene.periodic)
+              throw py::value_error("slope: found no periodic cell; expected periodic before, which repeats along the slope");
+            s.scene.periodic->slope_x = rise[0], s.scene.periodic->slope_y = rise[1];
           })
       .def(
           "light", [](SceneInMemory& s, const std::string& text) { return replace_light(s.scene, text); }, py::arg("text"))

@@ -147,6 +147,17 @@ class Scene:
             raise ValueError(f"periodic: found {len(cell)} values; expected xmin, ymin, xmax, ymax [m], or None")
         self._core.periodic = None if cell is None else [float(x) for x in cell]
 
+    @property
+    def slope(self) -> tuple[float, float]:
+        """dz/dx, dz/dy of the plane that a periodic scene repeats along; (0, 0): level. Set it after periodic."""
+        return self._core.slope
+
+    @slope.setter
+    def slope(self, rise: Sequence[float]) -> None:
+        if len(rise) != 2:
+            raise ValueError(f"slope: found {len(rise)} values; expected dz/dx, dz/dy")
+        self._core.slope = [float(x) for x in rise]
+
     # ---- light
 
     def _per_band(self, values: PerBand | None, where: str) -> Mapping[str, float] | None:
@@ -187,11 +198,18 @@ class Scene:
                                 "irradiance": self._per_band(irradiance, "sun.irradiance"), "angular_diameter": angular_diameter})
 
     def sky(self, model: str = "standard_overcast", irradiance: PerBand | None = None, *, file: str | os.PathLike[str] | None = None,
-            directions: ArrayLike | None = None) -> None:
-        """The sky, in the place of the one before. model: "uniform", "standard_overcast", "clear" (after sun()), "file" with a CSV file or
-        directions (k, 4) of x, y, z (towards the sky) and radiance, "sphere". irradiance on an unobstructed horizontal plane."""
+            directions: ArrayLike | None = None, turn: float | None = None, sun: str | None = None, encoding: str | None = None,
+            clearness: float | None = None, brightness: float | None = None, direct: float | None = None, diffuse: float | None = None,
+            day: int | None = None) -> None:
+        """The sky, in the place of the one before. irradiance on an unobstructed horizontal plane. model: "uniform"; "standard_overcast";
+        "clear" (after sun()); "perez" (after sun(); weather by clearness and brightness, or by direct and diffuse irradiance of all
+        wavelengths [W m^-2] and the day of the year, or by the bands' sums); "file" with a CSV file or directions (k, 4) of x, y, z (towards
+        the sky) and radiance; "image" with a file (HDR, EXR, PNG) of all directions, turn (azimuth of its middle column, from north over
+        east [degrees]), sun "keep" or "cut", encoding "linear" or "srgb"; "sphere"."""
         self._one_state("sky", {"model": model, "irradiance": self._per_band(irradiance, "sky.irradiance"), "file": file,
-                                "directions": None if directions is None else np.asarray(directions, dtype=float)})
+                                "directions": None if directions is None else np.asarray(directions, dtype=float), "turn": turn, "sun": sun,
+                                "encoding": encoding, "clearness": clearness, "brightness": brightness, "direct": direct, "diffuse": diffuse,
+                                "day": day})
 
     def split(self, irradiance: PerBand, *, sun: Mapping[str, Any], sky: Mapping[str, Any] | None = None, shortwave: float | None = None, day: int | None = None) -> None:
         """Global irradiance on a horizontal plane, split into sun and sky (Spitters, Toussaint & Goudriaan 1986) by the global radiation of

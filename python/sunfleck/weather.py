@@ -66,7 +66,9 @@ class Weather:
             state: dict[str, Any] = {"name": f"{hour.middle:%H:%M}", "duration": 3600.0}
             if above:
                 state["sun"] = {**where, "irradiance": {b: beam * s for b, s in shares.items()}}
-            state["sky"] = {"model": sky if above or sky != "clear" else "uniform", "irradiance": {b: diffuse * s for b, s in shares.items()}}
+            state["sky"] = {"model": sky if above or sky not in ("clear", "perez") else "uniform", "irradiance": {b: diffuse * s for b, s in shares.items()}}
+            if state["sky"]["model"] == "perez" and diffuse > 0:
+                state["sky"] |= {"direct": beam, "diffuse": diffuse}
             out.append(state)
         return out
 

@@ -10,6 +10,7 @@
 #include <sunfleck/core/input_file.hpp>
 #include <sunfleck/scene/extent.hpp>
 #include <sunfleck/scene/plant_sizes.hpp>
+#include <sunfleck/scene/slope.hpp>
 
 #include <format/scene_toml_parts.hpp>
 
@@ -33,7 +34,7 @@ TomlSchema scene_schema(const std::vector<std::string>& bands) {
   const TomlSchema state = TomlSchema::of(
       {"name", "duration_s"}, {{"sun", sun_schema(per_band)}, {"sky", sky_schema(per_band)}, {"global", global_schema(per_band)}});
   return TomlSchema::of({"bands"}, {{"units", per_band},
-                                    {"domain", TomlSchema::of({"periodic"})},
+                                    {"domain", TomlSchema::of({"periodic", "slope"})},
                                     {"sun", sun_schema(per_band)},
                                     {"sky", sky_schema(per_band)},
                                     {"global", global_schema(per_band)},
@@ -81,6 +82,14 @@ void read_domain(const TomlValue& root, Scene& scene) {
   if (!(v[2] > v[0] && v[3] > v[1]))
     periodic.fail(fmt::format("[{}, {}, {}, {}]", v[0], v[1], v[2], v[3]), "xmax above xmin and ymax above ymin");
   scene.periodic = PeriodicCell{v[0], v[1], v[2], v[3]};
+  if (const auto slope = domain->get("slope")) {
+    const auto s = slope->numbers(2, "dz/dx, dz/dy, how the endless plane rises to the east and to the north [-]");
+    if (!(std::hypot(s[0], s[1]) <= steepest_slope))
+      slope->fail(fmt::format("[{}, {}], a slope of {:.2f} degrees", s[0], s[1],
+                              std::atan(std::hypot(s[0], s[1])) * 180.0 / 3.14159265358979323846),
+                  fmt::format("dz/dx and dz/dy of a slope of at most {:g} (84.29 degrees): an upright plane has no cell", steepest_slope));
+    scene.periodic->slope_x = s[0], scene.periodic->slope_y = s[1];
+  }
 }
 
 }  // namespace
@@ -121,6 +130,7 @@ SceneFile read_scene_file(const std::string& file) {
   read_lamps(root, scene);
   read_sensors(root, scene);
   check_scene(scene);
+  for (auto& note : lay_on_slope(scene)) scene.notes.push_back(location(scene.file) + ": " + std::move(note));
   for (auto& note : notes_on_sizes(scene, scene_sizes(scene))) scene.notes.push_back(std::move(note));
   for (auto& note : notes_on_extent(scene)) scene.notes.push_back(std::move(note));
   return out;

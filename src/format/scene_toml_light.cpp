@@ -1,5 +1,6 @@
 // [sun], [sky], [global] and [[state]].
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <set>
@@ -61,6 +62,7 @@ SunPosition read_sun_position(const TomlValue& sun) {
 /// Irradiance of sun and sky per band, where the scene gives global radiation alone.
 struct Shares {
   std::vector<double> beam, sky;
+  std::array<double, 2> shortwave{};  ///< beam and sky of all wavelengths [W m^-2]
 };
 
 Shares split(const TomlValue& global, const SunPosition& sun, Scene& scene) {
@@ -90,26 +92,39 @@ Shares split(const TomlValue& global, const SunPosition& sun, Scene& scene) {
   const double elevation = std::asin(std::clamp(sun.direction.z, -1.0, 1.0)) / degree;
   const GlobalSplit shares = split_global(shortwave, elevation, day, global.where().c_str());
   Shares out;
+  const auto beam = [&](double e) { return shares.direct > 0 ? e * shares.direct / sun.direction.z : 0.0; };
   for (const double e : per_band) {
-    out.beam.push_back(shares.direct > 0 ? e * shares.direct / sun.direction.z : 0.0);
+    out.beam.push_back(beam(e));
     out.sky.push_back(e * shares.diffuse);
   }
+  out.shortwave = {beam(shortwave), shortwave * shares.diffuse};
   return out;
 }
 
-/// Nothing where it gives no light, so that a night may keep the day's model.
-std::optional<Sky> read_sky(const TomlValue& table, const Scene& scene, const std::optional<SunPosition>& sun,
-                            const std::optional<Shares>& shares) {
+/// Keys of a sky that only some models have.
+void check_sky_keys(const TomlValue& table, const std::string& model) {
+  const std::vector<std::pair<std::string, std::vector<const char*>>> keys = {
+      {"file", {"file", "directions"}},
+      {"image", {"file", "turn", "sun", "encoding"}},
+      {"perez", {"clearness", "brightness", "direct", "diffuse", "day"}}};
+  const auto has = [](const std::vector<const char*>& names, const std::string& key) {
+    return std::find(names.begin(), names.end(), key) != names.end();
+  };
+  for (const auto& [of_model, names] : keys)
+    for (const char* key : names) {
+      const auto value = table.get(key);
+      if (!value || std::any_of(keys.begin(), keys.end(), [&](const auto& k) { return k.first == model && has(k.second, key); })) continue;
+      value->fail(fmt::format("`{}` beside model = \"{}\"", key, model), fmt::format("model = \"{}\"", of_model));
+    }
+}
+
+/// Sky, and sun if the sky is a picture with one, of a state. Neither where they give no light, so that a night may keep the day's model.
+void read_sky(const TomlValue& table, Scene& scene, const StateAround& around, const std::optional<Shares>& shares, LightState& state) {
   Sky sky;
   const auto model = table.need("model", "one of " + joined(sky_model_names()));
-  const std::string name = model.text();
-  if (name == "perez") model.fail('"' + name + "\", which this version does not support", "one of " + joined(sky_model_names()));
   sky.model = *sky_model_from_name(model.one_of(sky_model_names()));
-  if (sky.model == SkyModel::file)
-    sky.table = read_sky_table(table, scene);
-  else
-    for (const char* key : {"file", "directions"})
-      if (const auto value = table.get(key)) value->fail(fmt::format("`{}` beside model = \"{}\"", key, name), "model = \"file\"");
+  check_sky_keys(table, name_of(sky.model));
+  if (sky.model == SkyModel::file) sky.table = read_sky_table(table, scene);
   if (shares) {
     if (const auto irradiance = table.get("irradiance"))
       irradiance->fail("`irradiance` beside `global`", "one of them: `global` is split into sun and sky");
@@ -118,10 +133,24 @@ std::optional<Sky> read_sky(const TomlValue& table, const Scene& scene, const st
     sky.irradiance =
         read_per_band(table.need("irradiance", "the irradiance per band, on an unobstructed horizontal plane"), scene, irradiance_value);
   }
-  if (std::all_of(sky.irradiance.begin(), sky.irradiance.end(), [](double e) { return e == 0; })) return std::nullopt;
-  if (sun) sky.sun = sun->direction;
+  if (std::all_of(sky.irradiance.begin(), sky.irradiance.end(), [](double e) { return e == 0; })) return;
+  if (around.sun && sky.needs_sun()) sky.sun = around.sun;
+  if (sky.model == SkyModel::perez) sky.weather = read_perez_weather(table, scene, around, sky.irradiance);
+  if (sky.model == SkyModel::image) {
+    PicturedSky pictured = read_sky_picture(table, scene, around.sun.has_value());
+    if (const auto& of_picture = pictured.sun) {
+      Sun sun{of_picture->direction, {}};
+      for (auto& e : sky.irradiance) {
+        sun.irradiance.push_back(e * of_picture->horizontal_share / sun.direction.z);
+        e *= 1.0 - of_picture->horizontal_share;
+      }
+      state.sun = std::move(sun);
+    }
+    sky.image = std::move(pictured.image);
+    if (!sky.image) return;
+  }
   prepare_sky(sky, model.where());
-  return sky;
+  state.sky = std::move(sky);
 }
 
 /// `owner` holds sun, sky and global: the scene itself or one [[state]].
@@ -130,6 +159,7 @@ LightState read_state(const TomlValue& owner, Scene& scene) {
   const auto sun_table = owner.get("sun"), sky_table = owner.get("sky"), global = owner.get("global");
   std::optional<SunPosition> position;
   std::optional<Shares> shares;
+  StateAround around;
   double diameter = Sun{}.angular_diameter_deg;
   if (sun_table) {
     position = read_sun_position(*sun_table);
@@ -148,13 +178,18 @@ LightState read_state(const TomlValue& owner, Scene& scene) {
     sun.irradiance = shares ? shares->beam
                             : read_per_band(sun_table->need("irradiance", "the irradiance per band, on a plane that faces the sun"), scene,
                                             irradiance_value);
+    around.beam = sun.irradiance;
     if (sun.direction.z > 0)
       state.sun = std::move(sun);
     else
       scene.notes.push_back(fmt::format("{}: the sun is {:.2f} degrees below the horizon: no sun", sun_table->where(),
                                         0.0 - std::asin(sun.direction.z) / degree));
   }
-  if (sky_table) state.sky = read_sky(*sky_table, scene, position, shares);
+  if (!sky_table) return state;
+  if (position) around.sun = position->direction, around.day_of_year = position->day_of_year;
+  if (shares) around.shortwave = shares->shortwave;
+  if (around.day_of_year == 0 && global && global->has("day")) around.day_of_year = static_cast<int>(global->get("day")->integer(1, 366));
+  read_sky(*sky_table, scene, around, shares, state);
   return state;
 }
 

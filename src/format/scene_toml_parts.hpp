@@ -1,9 +1,11 @@
 // What the parts of the scene reader share: one file a topic, read in the order of read_scene().
 #pragma once
 
+#include <array>
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,6 +32,24 @@ void read_light(const TomlValue& root, Scene& scene);
 TomlSchema sky_schema(const TomlSchema& per_band);
 /// The directions and radiances that a sky of model = "file" has.
 std::shared_ptr<const SkyTable> read_sky_table(const TomlValue& sky, const Scene& scene);
+
+// scene_toml_sky_kinds.cpp
+/// What a sky may know of the state that it is part of.
+struct StateAround {
+  std::optional<Vec3> sun;                         ///< where it stands, also below the horizon
+  int day_of_year = 0;                             ///< 0 = no date
+  std::vector<double> beam;                        ///< per band, on a plane that faces the sun; empty without a sun
+  std::optional<std::array<double, 2>> shortwave;  ///< by [global]: the beam and the diffuse light of all wavelengths [W m^-2]
+};
+/// The weather of a sky of model = "perez" that has `irradiance` per band.
+PerezWeather read_perez_weather(const TomlValue& sky, Scene& scene, const StateAround& around, const std::vector<double>& irradiance);
+
+/// A picture, and its sun where it is kept. No picture where all light is the sun's.
+struct PicturedSky {
+  std::shared_ptr<const SkyImage> image;
+  std::optional<PicturedSun> sun;
+};
+PicturedSky read_sky_picture(const TomlValue& sky, Scene& scene, bool has_sun);
 
 // scene_toml_optics.cpp
 TomlSchema optics_schema(const TomlSchema& per_band);

@@ -91,7 +91,8 @@ SkyRows read_rows(const std::string& file) {
 }  // namespace
 
 TomlSchema sky_schema(const TomlSchema& per_band) {
-  return TomlSchema::of({"model", "file", "directions"}, {{"irradiance", per_band}});
+  return TomlSchema::of({"model", "file", "directions", "turn", "sun", "encoding", "clearness", "brightness", "direct", "diffuse", "day"},
+                        {{"irradiance", per_band}});
 }
 
 std::shared_ptr<const SkyTable> read_sky_table(const TomlValue& sky, const Scene& scene) {

@@ -11,6 +11,7 @@
 #include <sunfleck/core/release_memory.hpp>
 #include <sunfleck/core/sampling.hpp>
 #include <sunfleck/instantiation/plan.hpp>
+#include <sunfleck/light/sky_parts.hpp>
 #include <sunfleck/scene/counts.hpp>
 
 #include "instantiation/sun_lines.hpp"
@@ -23,6 +24,25 @@ constexpr double most_ground = 16.0;  // area over that of members, beyond which
 
 constexpr std::uint64_t sun_stream = 0x5a6c3e1f9b7d2048ULL, own_stream = 0x3c8f6a1d5e9b7240ULL, ground_stream = 0x2e8b7a4d1c6f3095ULL;
 
+/// Copies turn their directions as they stand: skies with detail are blurred over what lies between directions.
+std::vector<LightState> blurred_states(const std::vector<LightState>& states, std::uint32_t directions) {
+  std::vector<LightState> out = states;
+  for (std::size_t s = 0; s < out.size(); ++s) {
+    if (!out[s].sky) continue;
+    std::size_t same = 0;
+    while (same < s && !(states[same].sky && same_radiance(*states[same].sky, *states[s].sky))) ++same;
+    auto& sky = *out[s].sky;
+    if (same < s) {
+      const auto irradiance = sky.irradiance;
+      sky = *out[same].sky;
+      sky.irradiance = irradiance;
+    } else {
+      sky = blurred(sky, std::sqrt(2.0 / directions));  // the radius of a cell
+    }
+  }
+  return out;
+}
+
 }  // namespace
 
 SceneLight::SceneLight(const Scene& a_scene, const PlacedScene& a_placed, const InstantiationSettings& settings, Progress& a_progress)
@@ -34,7 +54,8 @@ SceneLight::SceneLight(const Scene& a_scene, const PlacedScene& a_placed, const 
       states(a_scene.states.size()),
       bands(a_scene.band_count()),
       columns(states * bands),
-      lights(light_sources(a_scene.states)),
+      lit_states(blurred_states(a_scene.states, density.fine.directions)),
+      lights(light_sources(lit_states)),
       members(
           make_members(a_scene, a_placed, settings.classes, density.coarse, density.elements_per_organ, seed, a_progress, settings.store)),
       store(settings.store) {

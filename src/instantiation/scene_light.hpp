@@ -64,7 +64,8 @@ struct SceneLight {
   const std::uint64_t seed;
   Progress& progress;
   const std::size_t states, bands, columns;
-  const LightSources lights;
+  const std::vector<LightState> lit_states;  ///< those of the scene, with skies blurred over the angles between directions
+  const LightSources lights;                 ///< of lit_states
   Members members;
   OperatorStore* const store;  ///< or null
   std::vector<LitCells> lit;   ///< per distinct sun

@@ -2,15 +2,6 @@
 
 namespace sunfleck {
 
-namespace {
-
-bool same_radiance(const Sky& a, const Sky& b) {
-  if (a.model == SkyModel::file && b.model == SkyModel::file) return a.table == b.table || (a.table && b.table && *a.table == *b.table);
-  return a.model == b.model && (a.model != SkyModel::clear || (a.sun && b.sun && *a.sun == *b.sun));
-}
-
-}  // namespace
-
 LightSources light_sources(const std::vector<LightState>& states) {
   LightSources out;
   for (const auto& state : states) {

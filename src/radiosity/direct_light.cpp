@@ -10,7 +10,9 @@
 #include <sunfleck/core/sampling.hpp>
 #include <sunfleck/light/level_light.hpp>
 #include <sunfleck/light/open_light.hpp>
+#include <sunfleck/light/sky_parts.hpp>
 #include <sunfleck/light/wide_sun.hpp>
+#include <sunfleck/scene/slope.hpp>
 #include <sunfleck/visibility/projection.hpp>
 
 #include "transport.hpp"
@@ -174,11 +176,13 @@ class DirectLightSolver {
     bool below = false;
     for (const auto* sky : skies_) below = below || sky->reaches_below_horizon();
     for (std::uint32_t i = 0; i < density.sky_directions; ++i)
-      many.towards.push_back(hemisphere_direction(i, density.sky_directions, mix(settings_.seed, sky_stream)));
+      many.towards.push_back(along_lines(s_, hemisphere_direction(i, density.sky_directions, mix(settings_.seed, sky_stream))));
     for (const auto* sky : skies_) {
       auto &from_above = many.above.emplace_back(), &from_below = many.below.emplace_back();
-      for (const auto& d : many.towards) {
-        from_above.push_back(static_cast<float>(sky->relative_radiance(d)));
+      const auto radiance = radiances_along(*sky, many.towards);
+      for (std::size_t i = 0; i < radiance.size(); ++i) {
+        const Vec3& d = many.towards[i];
+        from_above.push_back(static_cast<float>(radiance[i]));
         if (below) from_below.push_back(static_cast<float>(sky->relative_radiance(-d)));
       }
     }
@@ -187,7 +191,7 @@ class DirectLightSolver {
     for (std::size_t k = 0; k < skies_.size(); ++k) {
       const OpenSky open(*skies_[k]);
       auto& sky = out_.sky.emplace_back(light_of_shares(shares[k], [&](const Vec3& normal) { return open.on(normal); }));
-      conserve(sky, skies_[k]->reaches_below_horizon() ? 2.0 : 1.0);
+      conserve(sky, skies_[k]->reaches_below_horizon() ? 2.0 * slope_area() : open.on(skies_[k]->horizon) * slope_area());
     }
   }
 
@@ -201,7 +205,7 @@ class DirectLightSolver {
     many.above.emplace_back(samples, 1.0f);
     double facing = 0.0;  // of a plane that faces the disc's centre
     for (auto& d : many.towards) {
-      if (d.z < 1e-3 && s_.periodic) d = glm::normalize(Vec3{d.x, d.y, 1e-3});
+      if (s_.periodic) d = lifted(*s_.periodic, d, least_sun_slope);
       facing += glm::dot(d, sun.direction);
     }
     const auto shares = share_seen(many, pitch_for(e_.patch_area, density.sun_lines_per_organ / samples), mix(seed, 1), "sun");
@@ -214,7 +218,7 @@ class DirectLightSolver {
     received =
         light_of_shares(shares[0], [&](const Vec3& normal) { return mean_of(normal, [](double c) { return std::max(0.0, c); }) / facing; });
     double level = 0.0;
-    for (const auto& d : many.towards) level += d.z / facing;
+    for (const auto& d : many.towards) level += (s_.periodic ? s_.periodic->above(d) : d.z) / facing;
     conserve(received, level);
     out_.sunlit.back() = light_of_shares(
         shares[0], [&](const Vec3& normal) { return mean_of(normal, [](double c) { return c > 0.0 ? 1.0 : 0.0; }) / samples; });
@@ -300,6 +304,12 @@ class DirectLightSolver {
     return light;
   }
 
+  /// Of the plane that a periodic scene repeats along, over its horizontal area.
+  double slope_area() const {
+    if (!s_.periodic) return 1.0;
+    return glm::length(Vec3{s_.periodic->slope_x, s_.periodic->slope_y, 1.0});
+  }
+
   /// In a periodic cell all light ends on plants or ground: `per_area` of the cell.
   void conserve(std::vector<float>& light, double per_area) const {
     if (!s_.periodic || !scene_.ground) return;
@@ -330,13 +340,15 @@ class DirectLightSolver {
     std::vector<float> all(cells, 0.0f), visible(cells, 0.0f);
     double line_area = 0;  // mean over the samples
     std::vector<double> line_areas(counts.size());
-    const auto share = [&](const Vec3& d) { return s_.periodic ? static_cast<float>(share_of_level_light(d, least_sun_slope)) : 1.0f; };
+    const auto share = [&](const Vec3& d) {
+      return s_.periodic ? static_cast<float>(share_of_level_light(s_.periodic->levelled(d), least_sun_slope)) : 1.0f;
+    };
     for (std::uint32_t first = 0; first < samples; first += batch) {
       const std::uint32_t n = std::min(batch, samples - first);
       tbb::parallel_for(std::uint32_t{0}, n, [&](std::uint32_t k) {
         const std::uint32_t i = first + k;
         Vec3 d = disc[i];
-        if (d.z < least_sun_slope && s_.periodic) d = glm::normalize(Vec3{d.x, d.y, least_sun_slope});
+        if (s_.periodic) d = lifted(*s_.periodic, d, least_sun_slope);
         clear(counts[k], cells);
         const auto p = project_set_member(s_, d, i, pitch, mix(seed, 1));
         line_areas[k] = p.line_area;

@@ -15,6 +15,7 @@
 #include <sunfleck/core/memory.hpp>
 #include <sunfleck/core/release_memory.hpp>
 #include <sunfleck/core/sampling.hpp>
+#include <sunfleck/light/sky_parts.hpp>
 
 #include "line_collector.hpp"
 
@@ -421,13 +422,16 @@ double line_pitch(const Elements& e, const RadiosityDensity& density) {
 std::vector<LineSky> skies_along(const std::vector<Projection>& projection, const std::vector<const Sky*>& skies, double mean_line_area) {
   bool below = false;
   for (const auto* sky : skies) below = below || sky->reaches_below_horizon();
+  std::vector<Vec3> directions;
+  for (const auto& p : projection) directions.push_back(p.direction);
   std::vector<LineSky> out(projection.size());
-  for (std::size_t d = 0; d < out.size(); ++d) {
-    out[d].weight = static_cast<float>(projection[d].line_area / mean_line_area);
-    for (const auto* sky : skies) {
-      const auto radiance = [&](const Vec3& w) { return out[d].weight * static_cast<float>(std::numbers::pi * sky->relative_radiance(w)); };
-      out[d].above.push_back(radiance(projection[d].direction));
-      if (below) out[d].below.push_back(radiance(-projection[d].direction));
+  for (std::size_t d = 0; d < out.size(); ++d) out[d].weight = static_cast<float>(projection[d].line_area / mean_line_area);
+  for (const auto* sky : skies) {
+    const auto radiance = radiances_along(*sky, directions);
+    for (std::size_t d = 0; d < out.size(); ++d) {
+      const auto of_lines = [&](double r) { return out[d].weight * static_cast<float>(std::numbers::pi * r); };
+      out[d].above.push_back(of_lines(radiance[d]));
+      if (below) out[d].below.push_back(of_lines(sky->relative_radiance(-directions[d])));
     }
   }
   return out;

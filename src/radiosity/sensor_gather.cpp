@@ -89,7 +89,7 @@ class Gathering {
       }
       const double cosine = glm::dot(d, n);
       const std::size_t side = cosine > 0.0 ? 0 : 1;
-      if (cosine == 0.0 || (side == 1 && !both) || (scene_.periodic && d.z <= 0.0)) continue;
+      if (cosine == 0.0 || (side == 1 && !both) || (scene_.periodic && scene_.periodic->above(d) <= 0.0)) continue;
       const Vec3 from =
           patch.point(sobol_owen(i, 0, scramble), sobol_owen(i, 1, scramble)) + (side == 0 ? 1.0 : -1.0) * world_.clearance() * n;
       // The sun's irradiance is on a plane that faces the disc's centre, where its mean cosine is (1 + cos radius) / 2.

@@ -155,7 +155,7 @@ void PathSampler::Impl::sun_at(const Vec3& p, CopyFacet facet, const Vec3& n, do
     if (!beam.sun) continue;
     const Vec3 d = beam.direction(u, v);
     const double c = glm::dot(d, n);
-    if (c == 0.0 || (rays.periodic() && d.z <= 0.0)) continue;  // a scene without end hides what is below its horizon
+    if (c == 0.0 || (rays.periodic() && rays.periodic()->above(d) <= 0.0)) continue;  // a scene without end hides what is below its horizon
     ++count;
     // The sun's irradiance is on a plane that faces its centre: the disc's mean cosine there is (1 + cos radius) / 2.
     if (!rays.occluded(p, d, facet)) hit(s, c > 0.0, std::abs(c) * 2.0 / (1.0 + beam.cos_radius));
@@ -402,6 +402,15 @@ PathSampler::Impl::Particles PathSampler::Impl::particles(std::uint32_t batch, s
   if (rays.bounds().empty()) return sum;
   const Vec3 centre = rays.bounds().centre();
   const double radius = 0.5 * glm::length(rays.bounds().size());
+  double heights[2] = {rays.bounds().low.z, rays.bounds().high.z};  // above the plane of a periodic scene
+  if (rays.periodic() && !rays.periodic()->is_level()) {
+    Box levelled;
+    for (int i = 0; i < 8; ++i) {
+      const auto &low = rays.bounds().low, &high = rays.bounds().high;
+      levelled.add(rays.periodic()->levelled({i & 1 ? high.x : low.x, i & 2 ? high.y : low.y, i & 4 ? high.z : low.z}));
+    }
+    heights[0] = levelled.low.z, heights[1] = levelled.high.z;
+  }
   std::vector<double> weight(bands);
   std::optional<LampEmission> emission;
   if (lamps) emission.emplace(lamps->lamps());
@@ -427,10 +436,10 @@ PathSampler::Impl::Particles PathSampler::Impl::particles(std::uint32_t batch, s
     Vec3 from;
     if (rays.periodic()) {
       const auto& cell = *rays.periodic();
-      const double margin = 1e-3 * (rays.bounds().size().z + cell.width());
-      from = {cell.x_low + u * cell.width(), cell.y_low + v * cell.depth(),
-              d.z > 0.0 ? rays.bounds().high.z + margin : rays.bounds().low.z - margin};
-      factor *= cell.area() * std::abs(d.z);
+      const double margin = 1e-3 * (rays.bounds().size().z + cell.width()), gain = cell.above(d);
+      from = {cell.x_low + u * cell.width(), cell.y_low + v * cell.depth(), 0.0};
+      from.z = (gain > 0.0 ? heights[1] + margin : heights[0] - margin) - cell.above(from);
+      factor *= cell.area() * std::abs(gain);
     } else {
       Vec3 a, b;
       orthonormal_frame(d, a, b);
@@ -448,7 +457,7 @@ PathSampler::Impl::Particles PathSampler::Impl::particles(std::uint32_t batch, s
       const auto x = [&](unsigned dimension) { return sobol_owen(i, dimension, scramble); };
       if (const auto& beam = beams[s]; beam.sun) {
         const Vec3 d = beam.direction(x(2), x(3));
-        if (!rays.periodic() || d.z > 0.0) send(s, d, x(0), x(1), 1.0, beam.sun->irradiance, random);
+        if (!rays.periodic() || rays.periodic()->above(d) > 0.0) send(s, d, x(0), x(1), 1.0, beam.sun->irradiance, random);
       }
       if (const Sky* sky = skies[s]) {
         // Uniform over the upper hemisphere, or over the sphere if light comes from there.

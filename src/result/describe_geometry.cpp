@@ -199,6 +199,8 @@ void write_geometry(OutputFile& file, ArrayWriter& arrays, const Scene& scene, c
       scene.periodic ? std::vector<double>{scene.periodic->x_low, scene.periodic->y_low, scene.periodic->x_high, scene.periodic->y_high}
                      : std::vector<double>{};
   if (scene.periodic) arrays.write(g, "periodic_cell", cell, "m");
+  if (scene.periodic && !scene.periodic->is_level())
+    arrays.write(g, "periodic_slope", std::vector<double>{scene.periodic->slope_x, scene.periodic->slope_y}, "1");
   write_attribute(file, g, "plant_facets", placed.first_ground_facet);
   write_attribute(file, g, "ground_facets", std::uint64_t{placed.ground.size()});
   arrays.flush();

@@ -1,6 +1,9 @@
 #include "result/read_geometry.hpp"
 
+#include <cmath>
+
 #include <sunfleck/core/error.hpp>
+#include <sunfleck/scene/slope.hpp>
 
 namespace sunfleck::h5 {
 
@@ -138,6 +141,16 @@ std::vector<std::shared_ptr<const Plant>> read_models(const DatasetReader& reade
 
 }  // namespace
 
+void read_slope(const DatasetReader& reader, PeriodicCell& cell) {
+  const std::string name = "geometry/periodic_slope";
+  if (!reader.has(name)) return;
+  reader.expect(name, {2});
+  const auto slope = reader.all<double>(name);
+  if (!(std::hypot(slope[0], slope[1]) <= steepest_slope))
+    reader.fail(name, std::to_string(slope[0]) + ", " + std::to_string(slope[1]), "a slope of at most 10");
+  cell.slope_x = slope[0], cell.slope_y = slope[1];
+}
+
 ResultGeometry read_geometry(const DatasetReader& reader, std::size_t materials) {
   ResultGeometry out;
   auto meshes = read_meshes(reader);
@@ -185,6 +198,7 @@ ResultGeometry read_geometry(const DatasetReader& reader, std::size_t materials)
     reader.expect(g + "periodic_cell", {4});
     const auto cell = reader.all<double>(g + "periodic_cell");
     out.periodic = PeriodicCell{cell[0], cell[1], cell[2], cell[3]};
+    read_slope(reader, *out.periodic);
   }
   return out;
 }

@@ -367,7 +367,9 @@ std::optional<PeriodicCell> Result::periodic() const {
   if (!reader.has("geometry/periodic_cell")) return std::nullopt;
   reader.expect("geometry/periodic_cell", {4});
   const auto cell = reader.all<double>("geometry/periodic_cell");
-  return PeriodicCell{cell[0], cell[1], cell[2], cell[3]};
+  PeriodicCell out{cell[0], cell[1], cell[2], cell[3]};
+  h5::read_slope(reader, out);
+  return out;
 }
 
 std::optional<Certificate> Result::certificate() const {

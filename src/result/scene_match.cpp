@@ -36,6 +36,9 @@ Difference area_difference(const Result& x, const Result& r) {
 }
 
 std::string cell_text(const std::optional<PeriodicCell>& cell) {
+  if (cell && !cell->is_level())
+    return fmt::format("a cell from ({:g}, {:g}) to ({:g}, {:g}) that repeats along a slope of [{:g}, {:g}]", cell->x_low, cell->y_low,
+                       cell->x_high, cell->y_high, cell->slope_x, cell->slope_y);
   return cell ? fmt::format("a cell from ({:g}, {:g}) to ({:g}, {:g}) that repeats", cell->x_low, cell->y_low, cell->x_high, cell->y_high)
               : "nothing that repeats";
 }

@@ -11,6 +11,7 @@
 #include <sunfleck/core/utf8.hpp>
 #include <sunfleck/scene/build.hpp>
 #include <sunfleck/scene/extent.hpp>
+#include <sunfleck/scene/slope.hpp>
 
 #include "scene/check_devices.hpp"
 #include "scene/check_reach.hpp"
@@ -83,9 +84,13 @@ class Check {
       irradiance(state.sky->irradiance, key + ".sky.irradiance");
       if (state.sky->model == SkyModel::file && !state.sky->table)
         fail(key + ".sky", "a sky of directions without any", "a table of directions and radiances");
-      if (state.sky->model == SkyModel::clear && !state.sky->sun)
-        fail(key + ".sky", "a clear sky without a sun", "the direction of the sun, about which it is built");
-      if (!is_prepared(*state.sky)) fail(key + ".sky", "a clear sky that is not prepared", "a call of prepare_sky(), which solve() makes");
+      if (state.sky->model == SkyModel::image && !state.sky->image)
+        fail(key + ".sky", "a sky of a picture without any", "a picture of the sky");
+      const std::string name = name_of(state.sky->model);
+      if (state.sky->needs_sun() && !state.sky->sun)
+        fail(key + ".sky", "a " + name + " sky without a sun", "the direction of the sun, about which it is built");
+      if (!is_prepared(*state.sky))
+        fail(key + ".sky", "a " + name + " sky that is not prepared", "a call of prepare_sky(), which solve() makes");
     }
   }
 
@@ -112,6 +117,10 @@ class Check {
     for (const double v : {cell.x_low, cell.y_low, cell.x_high, cell.y_high}) near(v, "domain.periodic");
     if (!(cell.width() > 0 && cell.depth() > 0))
       fail("domain.periodic", fmt::format("a cell of {} by {} m", cell.width(), cell.depth()), "lengths above zero");
+    if (!(std::hypot(cell.slope_x, cell.slope_y) <= steepest_slope))
+      fail("domain.slope", fmt::format("[{}, {}]", cell.slope_x, cell.slope_y), fmt::format("a slope of at most {:g}", steepest_slope));
+    if (!cell.is_level() && !scene_.lamps.empty())
+      fail("domain.slope", "lamps over a slope without end", "sun and sky alone: their images on slopes are not followed");
   }
 
   void ground(const Ground& ground) const {

@@ -57,8 +57,9 @@ void put_sensor(ContentKey& key, const SensorEntry& sensor) {
 
 void put_geometry(ContentKey& key, const Scene& scene) {
   key.put(static_cast<std::uint64_t>(scene.band_count()));
-  put_optional(key, scene.periodic,
-               [&](const PeriodicCell& c) { key.put(c.x_low), key.put(c.y_low), key.put(c.x_high), key.put(c.y_high); });
+  put_optional(key, scene.periodic, [&](const PeriodicCell& c) {
+    key.put(c.x_low), key.put(c.y_low), key.put(c.x_high), key.put(c.y_high), key.put(c.slope_x), key.put(c.slope_y);
+  });
   key.put(static_cast<std::uint64_t>(scene.optics.size()));
   for (const auto& o : scene.optics) put_optics(key, o);
   put_optional(key, scene.ground, [&](const Ground& g) { put_ground(key, g); });
@@ -91,6 +92,13 @@ void put_sky(ContentKey& key, const Sky& sky) {
   put_optional(key, sky.sun, [&](const Vec3& d) { key.put(d); });
   key.put(sky.table != nullptr);
   if (sky.table) key.put(sky.table->directions()), key.put(sky.table->radiances());
+  put_optional(key, sky.weather, [&](const PerezWeather& w) { key.put(w.clearness), key.put(w.brightness); });
+  key.put(sky.horizon);
+  key.put(sky.image != nullptr);
+  if (sky.image) {
+    const auto& picture = sky.image->picture();
+    key.put(picture.columns), key.put(picture.turn_deg), key.put(picture.value);
+  }
 }
 
 void put_photometry(ContentKey& key, const Photometry& p) {

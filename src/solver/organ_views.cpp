@@ -36,7 +36,7 @@ std::array<Seen, 2> look(const FacetRows& rows, const RayScene& rays, const Samp
           cosine_direction(side == 0 ? normal : -normal, sobol_owen(i, 2 + 2 * side, scramble), sobol_owen(i, 3 + 2 * side, scramble));
       const RayHit hit = rays.first_hit(point, direction, facet);
       if (!hit)
-        seen[side].sky += direction.z > 0;
+        seen[side].sky += rays.periodic() ? rays.periodic()->above(direction) > 0 : direction.z > 0;
       else
         seen[side].ground += rows.is_ground(hit.copy);
     }

@@ -77,7 +77,10 @@ void add_devices(const Scene& scene, const std::string& method, std::vector<Plan
 PlanItem periodicity_item(const Scene& scene) {
   if (!scene.periodic) return {"periodicity", false, "the scene is finite"};
   return {"periodicity", true,
-          fmt::format("a cell of {:g} m x {:g} m repeats without end", scene.periodic->width(), scene.periodic->depth())};
+          fmt::format("a cell of {:g} m x {:g} m repeats without end{}", scene.periodic->width(), scene.periodic->depth(),
+                      scene.periodic->is_level()
+                          ? ""
+                          : fmt::format(" along a slope of [{:g}, {:g}]", scene.periodic->slope_x, scene.periodic->slope_y))};
 }
 
 void add_geometry(const Scene& scene, const SceneCounts& counts, std::vector<PlanItem>& items) {

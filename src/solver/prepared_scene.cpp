@@ -3,6 +3,7 @@
 #include <cstddef>
 
 #include <sunfleck/core/error.hpp>
+#include <sunfleck/scene/slope.hpp>
 
 namespace sunfleck {
 
@@ -13,6 +14,10 @@ PreparedScene::PreparedScene(const Scene& scene) : given_(scene) {
     if (!made_) made_ = scene;
     const auto& name = scene.states[s].name;
     prepare_sky(*made_->states[s].sky, location(scene.file, 0, name.empty() ? "sky" : "sky of state \"" + name + '"'));
+  }
+  if (lies_on_slope(this->scene())) {
+    if (!made_) made_ = scene;
+    for (auto& note : lay_on_slope(*made_)) made_->notes.push_back(std::move(note));
   }
   check_scene(this->scene());
 }

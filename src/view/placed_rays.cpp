@@ -20,6 +20,10 @@ struct PlacedRays::Impl {
       const auto first = [](double x, double low, double size) { return static_cast<int>(std::floor((x - low) / size)); };
       low_x = first(box.low.x, cell.x_low, cell.width()), high_x = first(box.high.x, cell.x_low, cell.width());
       low_y = first(box.low.y, cell.y_low, cell.depth()), high_y = first(box.high.y, cell.y_low, cell.depth());
+      Box levelled;
+      for (int i = 0; i < 8; ++i)
+        levelled.add(cell.levelled({i & 1 ? box.high.x : box.low.x, i & 2 ? box.high.y : box.low.y, i & 4 ? box.high.z : box.low.z}));
+      lowest = levelled.low.z, highest = levelled.high.z;
     }
   }
 
@@ -29,17 +33,18 @@ struct PlacedRays::Impl {
   raytree::Tree tree;
   PeriodicCell cell;
   int low_x = 0, high_x = 0, low_y = 0, high_y = 0;  ///< cells that the stored image reaches into
+  double lowest = 0, highest = 0;                    ///< above the plane that it repeats along
 };
 
 /// Cell by cell along the ray, and in each cell the images that reach into it.
 PlacedHit PlacedRays::Impl::repeated(const Vec3& origin, const Vec3& direction, double from, double to, std::size_t start, bool any) const {
-  const Box box = tree.box();
-  // The part of the ray within the heights of the geometry.
-  if (direction.z != 0) {
-    double enter = (box.low.z - origin.z) / direction.z, leave = (box.high.z - origin.z) / direction.z;
+  // The part of the ray within the heights of the geometry above the plane it repeats along.
+  const double gain = cell.above(direction), height = cell.above(origin);
+  if (gain != 0) {
+    double enter = (lowest - height) / gain, leave = (highest - height) / gain;
     if (enter > leave) std::swap(enter, leave);
     from = std::max(from, enter), to = std::min(to, leave);
-  } else if (origin.z < box.low.z || origin.z > box.high.z) {
+  } else if (height < lowest || height > highest) {
     return {};
   }
   const double slack = 1e-6 * std::max(cell.width(), cell.depth());
@@ -60,7 +65,7 @@ PlacedHit PlacedRays::Impl::repeated(const Vec3& origin, const Vec3& direction, 
     double range = next + slack;
     for (int j = y - high_y; j <= y - low_y; ++j)
       for (int i = x - high_x; i <= x - low_x; ++i) {
-        const Vec3 shift{i * cell.width(), j * cell.depth(), 0.0};
+        const Vec3 shift = cell.image(i, j);
         const auto hit = tree.trace(tree.world(), origin - shift, direction, std::max(0.0, at - slack), range,
                                     i == 0 && j == 0 ? start : no_placed_facet, any);
         if (hit && any) return hit;

@@ -1,6 +1,7 @@
 #include <sunfleck/visibility/copies.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -17,6 +18,14 @@ namespace {
 constexpr double least_slope_among_copies = 1e-4;  // of rays in periodic scenes
 constexpr double most_cells_wrapped = 1e6;         // that a ray is wrapped through
 
+/// Corners of a surface's box, where a copy of it stands.
+template <class Visit>
+void each_corner(const Surface& s, const Affine& map, Visit&& visit) {
+  for (int i = 0; i < 8; ++i)
+    visit(map.point(s.origin + Vec3{i & 1 ? s.focus.high.x : s.focus.low.x, i & 2 ? s.focus.high.y : s.focus.low.y,
+                                    i & 4 ? s.focus.high.z : s.focus.low.z}));
+}
+
 }  // namespace
 
 struct CopyRays::Impl {
@@ -24,6 +33,7 @@ struct CopyRays::Impl {
     box = extent();
     centre = box.empty() ? Vec3{0.0} : box.centre();
     if (scene.periodic) {
+      find_heights();
       centre.x = scene.periodic->x_low;
       centre.y = scene.periodic->y_low;
     }
@@ -42,6 +52,19 @@ struct CopyRays::Impl {
     for (const auto& t : scene.ground)
       for (const auto& p : t) b.add(p);
     return b;
+  }
+
+  /// Above the plane that the scene repeats along.
+  void find_heights() {
+    Box b;
+    const auto add = [&](const Vec3& p) { b.add(scene.periodic->levelled(p)); };
+    for (const auto& copy : scene.copies) {
+      const Surface& s = *scene.surfaces[copy.surface];
+      if (!s.focus.empty()) each_corner(s, copy.map, add);
+    }
+    for (const auto& t : scene.ground)
+      for (const auto& p : t) add(p);
+    if (!b.empty()) heights = {b.low.z, b.high.z};
   }
 
   EmbreeScenePointer surface_scene(const Surface& s) {
@@ -79,7 +102,7 @@ struct CopyRays::Impl {
       throw InputError("domain.periodic", fmt::format("plants that reach over more than {:.0f} cells", most),
                        "a cell of about the plants' size, all in metres, or method clustering, flat, direct or reference");
     for (double y = low_y; y <= high_y; ++y)
-      for (double x = low_x; x <= high_x; ++x) add_instance(c, {x * cell.width(), y * cell.depth(), 0.0});
+      for (double x = low_x; x <= high_x; ++x) add_instance(c, cell.image(x, y));
   }
 
   void add_ground() {
@@ -126,26 +149,30 @@ struct CopyRays::Impl {
       if (!segment(in, p, d, skip, range, r)) return {};
       return found(r, p + static_cast<double>(r.ray.tfar) * d, static_cast<double>(r.ray.tfar));
     }
-    if (std::fabs(d.z) < least_slope_among_copies)
-      d = glm::normalize(Vec3{d.x, d.y, d.z < 0 ? -least_slope_among_copies : least_slope_among_copies});
+    const PeriodicCell& cell = *scene.periodic;
+    double gain = cell.above(d);
+    if (std::fabs(gain) < least_slope_among_copies) {
+      const double least = gain < 0 ? -least_slope_among_copies : least_slope_among_copies;
+      d = glm::normalize(Vec3{d.x, d.y, d.z + (least - gain)});
+      gain = cell.above(d);
+    }
     const double width = scene.periodic->width(), depth = scene.periodic->depth();
     const double slack = 1e-6 * std::max({width, depth, box.size().z});  // level ground is at the very end, in single precision
-    const double low = box.low.z - centre.z - slack, high = box.high.z - centre.z + slack;
-    p.x -= width * std::floor(p.x / width);
-    p.y -= depth * std::floor(p.y / depth);
+    const double low = heights[0] - cell.above(centre) - slack, high = heights[1] - cell.above(centre) + slack;
+    p -= cell.image(std::floor(p.x / width), std::floor(p.y / depth));
     double travelled = 0, from = skip;
     for (double cells = 0; cells < most_cells_wrapped; ++cells) {
       const double to_x = d.x > 0 ? (width - p.x) / d.x : d.x < 0 ? -p.x / d.x : std::numeric_limits<double>::infinity();
       const double to_y = d.y > 0 ? (depth - p.y) / d.y : d.y < 0 ? -p.y / d.y : std::numeric_limits<double>::infinity();
-      const double to_end = d.z > 0 ? (high - p.z) / d.z : (low - p.z) / d.z;
+      const double to_end = (gain > 0 ? high - cell.above(p) : low - cell.above(p)) / gain;
       const double step = std::max(0.0, std::min(to_x, to_y)), overlap = 1e-6 * (1.0 + step);
       const double to = std::min({step + overlap, to_end + overlap, range - travelled});
       if (to > from && segment(in, p, d, from, to, r))
         return found(r, p + static_cast<double>(r.ray.tfar) * d, travelled + static_cast<double>(r.ray.tfar));
       if (to_end <= step || travelled + step >= range) return {};
       p += step * d;
-      if (to_x <= to_y) p.x += d.x > 0 ? -width : width;
-      if (to_y <= to_x) p.y += d.y > 0 ? -depth : depth;
+      if (to_x <= to_y) p -= cell.image(d.x > 0 ? 1.0 : -1.0, 0.0);
+      if (to_y <= to_x) p -= cell.image(0.0, d.y > 0 ? 1.0 : -1.0);
       p.x = std::clamp(p.x, 0.0, width);
       p.y = std::clamp(p.y, 0.0, depth);
       travelled += step;
@@ -162,6 +189,7 @@ struct CopyRays::Impl {
   bool level = true;
   Vec3 centre{0.0};
   Box box;
+  std::array<double, 2> heights{};  ///< the lowest and the highest, in periodic scenes
   std::vector<std::uint32_t> instance_copy;
   std::vector<Vec3> instance_moved;
 };
@@ -169,9 +197,7 @@ struct CopyRays::Impl {
 Box copy_bounds(const Surface& s, const Affine& map) {
   Box b;
   if (s.focus.empty()) return b;
-  for (int i = 0; i < 8; ++i)
-    b.add(map.point(s.origin + Vec3{i & 1 ? s.focus.high.x : s.focus.low.x, i & 2 ? s.focus.high.y : s.focus.low.y,
-                                    i & 4 ? s.focus.high.z : s.focus.low.z}));
+  each_corner(s, map, [&](const Vec3& p) { b.add(p); });
   return b;
 }
 

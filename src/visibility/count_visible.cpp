@@ -63,7 +63,7 @@ void count_strip(const Surface& s, const Projection& p, bool from_below, const s
   const std::size_t pixels = static_cast<std::size_t>(row_end - row_begin) * p.columns;
   buffer.clear(pixels);
   const float sign = from_below ? -1.0f : 1.0f;
-  const auto tolerance = static_cast<float>(s.depth_tolerance * (p.wraps ? p.direction.z : 1.0));
+  const auto tolerance = static_cast<float>(s.depth_tolerance * depth_per_length(s, p));
   rasterise(s, p, list, 0, triangles, row_begin, row_end,
             [&](const ProjectedTriangle& t, int row, int column, int count, float dx, float dy) {
               const std::size_t first = static_cast<std::size_t>(row - row_begin) * p.columns + column;

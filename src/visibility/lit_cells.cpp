@@ -12,6 +12,7 @@
 #include <sunfleck/core/error.hpp>
 #include <sunfleck/core/sampling.hpp>
 #include <sunfleck/light/level_light.hpp>
+#include <sunfleck/scene/slope.hpp>
 #include <sunfleck/visibility/projection.hpp>
 
 #include "depth_buffer.hpp"
@@ -116,12 +117,12 @@ std::uint8_t in_255ths(std::uint64_t visible, std::uint64_t all, std::uint64_t s
 
 /// How many more lines than `pitch` [m] says go through a scene: small cells of periodic ones have at least some.
 double times_finer(const CopyScene& scene, const Vec3& d, double pitch) {
-  return scene.periodic ? std::max(1.0, fewest_cell_lines * pitch * pitch / (scene.periodic->area() * d.z)) : 1.0;
+  return scene.periodic ? std::max(1.0, fewest_cell_lines * pitch * pitch / (scene.periodic->area() * scene.periodic->above(d))) : 1.0;
 }
 
 /// The direction that lines are followed along.
 Vec3 followed(const CopyScene& scene, const Vec3& d) {
-  return scene.periodic && d.z < least_slope_of_lines ? glm::normalize(Vec3{d.x, d.y, least_slope_of_lines}) : d;
+  return scene.periodic ? lifted(*scene.periodic, d, least_slope_of_lines) : d;
 }
 
 class LitCellsCounter {
@@ -192,13 +193,15 @@ class LitCellsCounter {
     plane.direction = d;
     if (scene_.periodic) {
       const auto& cell = *scene_.periodic;
-      const double finer = std::sqrt(times_finer(scene_, d, pitch) * d.z) / pitch;
+      const double gain = cell.above(d);
+      const Vec3 up{cell.above({1.0, 0.0, 0.0}), cell.above({0.0, 1.0, 0.0}), 1.0};  // the gradient of what is above the plane
+      const double finer = std::sqrt(times_finer(scene_, d, pitch) * gain) / pitch;
       columns_ = std::max(std::int64_t{1}, std::int64_t{std::llround(cell.width() * finer)});
       rows_ = std::max(std::int64_t{1}, std::int64_t{std::llround(cell.depth() * finer)});
       const double per_x = static_cast<double>(columns_) / cell.width(), per_y = static_cast<double>(rows_) / cell.depth();
-      plane.x_row = Vec3{1.0, 0.0, -d.x / d.z} * per_x;
-      plane.y_row = Vec3{0.0, 1.0, -d.y / d.z} * per_y;
-      plane.z_row = {0.0, 0.0, 1.0};
+      plane.x_row = (Vec3{1.0, 0.0, 0.0} - d.x / gain * up) * per_x;
+      plane.y_row = (Vec3{0.0, 1.0, 0.0} - d.y / gain * up) * per_y;
+      plane.z_row = up;
       plane.x0 = -cell.x_low * per_x + shift_x;
       plane.y0 = -cell.y_low * per_y + shift_y;
     } else {
@@ -433,7 +436,7 @@ LitCells lit_cells(const CopyScene& scene, const std::vector<Vec3>& directions, 
     progress.fraction("sun", static_cast<double>(i) / static_cast<double>(directions.size()));
     const auto shift = r2_point(i, unit_interval(mix(seed, 1)), unit_interval(mix(seed, 2)));
     const Vec3 d = followed(scene, directions[i]);
-    const double share = scene.periodic ? share_of_level_light(directions[i], least_slope_of_lines) : 1.0;
+    const double share = scene.periodic ? share_of_level_light(scene.periodic->levelled(directions[i]), least_slope_of_lines) : 1.0;
     const double turn = static_cast<double>(i) * golden_ratio_fraction + unit_interval(mix(seed, 3));
     for (const double p : pitches)
       counter.project(d, share, mix(seed, 4, i), p, 2.0 * std::numbers::pi * (turn - std::floor(turn)), shift[0], shift[1]);

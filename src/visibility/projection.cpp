@@ -7,6 +7,7 @@
 
 #include <sunfleck/core/error.hpp>
 #include <sunfleck/core/sampling.hpp>
+#include <sunfleck/scene/slope.hpp>
 
 #include "golden_ratio.hpp"
 
@@ -15,6 +16,7 @@ namespace sunfleck {
 namespace {
 
 constexpr double fewest_periodic_lines = 1024.0;  ///< towards the zenith
+constexpr double least_gain_on_slopes = 1e-3;     ///< of lines along the plane of a slope, which would meet all of it
 constexpr double most_layers = 64.0;              ///< of surfaces over the cell, for which so many lines are affordable
 
 /// Fewer where surfaces lie over the cell in very many layers (a plant a hundred cells wide): each line meets them all.
@@ -34,7 +36,9 @@ Projection periodic_projection(const Surface& surface, const Vec3& d, double pit
   // lines of all directions alike, so small cells get finer grids, whose sizes round less.
   double lines = cell.area() / (pitch * pitch);
   if (lines < fewest_periodic_lines) lines = std::max(lines, fewest_lines(surface, cell));
-  const double wanted = std::max(1.0, lines * d.z);
+  const double gain = cell.above(d);
+  const Vec3 up{cell.above({1.0, 0.0, 0.0}), cell.above({0.0, 1.0, 0.0}), 1.0};  // the gradient of what is above the plane
+  const double wanted = std::max(1.0, lines * gain);
   const auto middle = static_cast<int>(std::lround(std::sqrt(wanted * cell.width() / cell.depth())));
   double least = 1e30;
   for (int columns = std::max(1, middle - middle / 8), last = std::max(1, middle + middle / 8); columns <= last; ++columns) {
@@ -46,12 +50,12 @@ Projection periodic_projection(const Surface& surface, const Vec3& d, double pit
     p.rows = rows;
   }
   const double per_x = p.columns / cell.width(), per_y = p.rows / cell.depth();
-  p.x_row = Vec3{1.0, 0.0, -d.x / d.z} * per_x;
-  p.y_row = Vec3{0.0, 1.0, -d.y / d.z} * per_y;
-  p.z_row = {0.0, 0.0, 1.0};
+  p.x_row = (Vec3{1.0, 0.0, 0.0} - d.x / gain * up) * per_x;
+  p.y_row = (Vec3{0.0, 1.0, 0.0} - d.y / gain * up) * per_y;
+  p.z_row = up;
   p.x0 = (surface.origin.x - cell.x_low) * per_x + shift_x;
   p.y0 = (surface.origin.y - cell.y_low) * per_y + shift_y;
-  p.line_area = cell.area() * d.z / (static_cast<double>(p.columns) * p.rows);
+  p.line_area = cell.area() * gain / (static_cast<double>(p.columns) * p.rows);
   return p;
 }
 
@@ -114,7 +118,7 @@ struct Polygon {
 }  // namespace
 
 Projection project_along(const Surface& surface, const Vec3& direction, double pitch, double turn, double shift_x, double shift_y) {
-  return surface.periodic ? periodic_projection(surface, direction, pitch, shift_x, shift_y)
+  return surface.periodic ? periodic_projection(surface, along_lines(surface, direction), pitch, shift_x, shift_y)
                           : finite_projection(surface, direction, pitch, turn, shift_x, shift_y);
 }
 
@@ -122,6 +126,16 @@ Vec3 hemisphere_direction(std::uint32_t d, std::uint32_t count, std::uint64_t se
   const double z = (d + 0.5) / count, turns = d * golden_ratio_fraction + unit_interval(mix(seed));
   const double azimuth = 2.0 * std::numbers::pi * (turns - std::floor(turns)), s = std::sqrt(1.0 - z * z);
   return {s * std::cos(azimuth), s * std::sin(azimuth), z};
+}
+
+Vec3 along_lines(const Surface& surface, const Vec3& direction) {
+  if (!surface.periodic || surface.periodic->is_level()) return direction;
+  const Vec3 d = surface.periodic->above(direction) < 0.0 ? -direction : direction;
+  return lifted(*surface.periodic, d, least_gain_on_slopes);
+}
+
+double depth_per_length(const Surface& surface, const Projection& projection) {
+  return projection.wraps ? surface.periodic->above(projection.direction) : 1.0;
 }
 
 Projection project_set_member(const Surface& surface, const Vec3& direction, std::uint32_t d, double pitch, std::uint64_t seed) {

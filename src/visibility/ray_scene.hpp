@@ -64,7 +64,8 @@ struct RayScene::Impl {
 
   Impl(const FacetScene* f, const FacetRows* r);
 
-  Vec3 local(const Vec3& p) const { return (p - origin) * scale; }
+  /// About the origin, in units of the scene's size; on a slope with z above its plane, so that images of the cell are level.
+  Vec3 local(const Vec3& p) const { return (cell ? cell->levelled(p - origin) : p - origin) * scale; }
   Triangle local_corners(CopyFacet facet, CellImage image) const;
   Triangle primitive_corners(std::size_t primitive) const;  ///< of an own primitive: where its image lies in the cell
   /// As rays meet it: the ground lies lower than it is given.
@@ -78,6 +79,7 @@ struct RayScene::Impl {
   bool has_area(std::uint32_t own_facet) const;
 
   void place();  ///< bounds, origin, scale, cell, range of heights
+  void find_heights();
   void list_primitives();
   void list_instances();
   void find_stacks();

@@ -150,6 +150,21 @@ void RayScene::Impl::place() {
     width = cell->width() * scale, depth = cell->depth() * scale;
   }
   box = {local(bounds.low - Vec3{0.0, 0.0, gap.metres()}) - slack, local(bounds.high) + slack};
+  if (periodic && !cell->is_level()) find_heights();
+}
+
+/// Above the plane of a slope, which goes through all heights itself.
+void RayScene::Impl::find_heights() {
+  Box b;
+  for (std::uint32_t f = 0; f < own_count; ++f)
+    if (has_area(f))
+      for (const auto& p : corners(own(f))) b.add(local(p));
+  for (std::uint32_t c = 0; rows && c < own_copy; ++c)
+    if (const Box& of_plant = plant_of(c).box; !of_plant.empty())
+      for (int i = 0; i < 8; ++i)
+        b.add(local(rows->placed().copies[c].map.point({i & 1 ? of_plant.high.x : of_plant.low.x, i & 2 ? of_plant.high.y : of_plant.low.y,
+                                                        i & 4 ? of_plant.high.z : of_plant.low.z})));
+  box.low.z = b.low.z - slack, box.high.z = b.high.z + slack;
 }
 
 void RayScene::Impl::list_primitives() {
@@ -271,12 +286,15 @@ void RayScene::Impl::build() {
     device.commit(plant.embree.get());
   }
   embree = device.new_scene(flags);
+  Mat3 levelling(1.0);
+  if (cell)
+    for (int axis = 0; axis < 3; ++axis) levelling[axis] = cell->levelled(Mat3(1.0)[axis]);
   for (unsigned i = 0; i < instances.size(); ++i) {
     const auto& map = rows->placed().copies[instances[i].copy].map;
     const auto& plant = plant_of(instances[i].copy);
     // p' = scale (L (p / plant.scale + middle) + t - origin), moved by the image
     const Vec3 move = local(map.point(plant.middle)) - Vec3{instances[i].image.x * width, instances[i].image.y * depth, 0.0};
-    attach_instance(device, embree.get(), i, plant.embree.get(), map.linear * (scale / plant.scale), move);
+    attach_instance(device, embree.get(), i, plant.embree.get(), levelling * map.linear * (scale / plant.scale), move);
   }
   if (!facet_of.empty()) {
     EmbreeTriangles triangles(device, facet_of.size());

@@ -86,6 +86,7 @@ RayHit RayScene::Impl::trace(Vec3 p, Vec3 d, CopyFacet start, double range) cons
   RayHit hit;
   if (facet_of.empty() && instances.empty()) return hit;
   p = local(p);
+  Vec3 way = periodic ? cell->levelled(d) : d;  // among what is laid level; no unit vector on slopes
   range *= scale;
   const auto meet = [&](const RTCRayHit& at, double before) {
     hit.facet = 0;  // which one, occlusion does not tell
@@ -124,15 +125,15 @@ RayHit RayScene::Impl::trace(Vec3 p, Vec3 d, CopyFacet start, double range) cons
     return hit;
   }
 
-  if (periodic && std::abs(d.z) < least_slope) d = glm::normalize(Vec3{d.x, d.y, d.z < 0.0 ? -least_slope : least_slope});
+  if (periodic && std::abs(way.z) < least_slope) way = glm::normalize(Vec3{way.x, way.y, way.z < 0.0 ? -least_slope : least_slope});
   // The part of the ray within the geometry's box (range of heights, if periodic), found in double precision: rays may come from afar.
   double begin = 0.0, end = range;
   for (int axis = periodic ? 2 : 0; axis < 3; ++axis) {
-    if (d[axis] == 0.0) {
+    if (way[axis] == 0.0) {
       if (p[axis] < box.low[axis] || p[axis] > box.high[axis]) return hit;
       continue;
     }
-    const double a = (box.low[axis] - p[axis]) / d[axis], b = (box.high[axis] - p[axis]) / d[axis];
+    const double a = (box.low[axis] - p[axis]) / way[axis], b = (box.high[axis] - p[axis]) / way[axis];
     begin = std::max(begin, std::min(a, b));
     end = std::min(end, std::max(a, b));
   }
@@ -141,30 +142,30 @@ RayHit RayScene::Impl::trace(Vec3 p, Vec3 d, CopyFacet start, double range) cons
   RTCRayHit found;
   if (!periodic) {
     const double reach = end < range ? end - begin + slack : end - begin;
-    if (segment<any>(p + begin * d, d, reach, query, found)) meet(found, begin);
+    if (segment<any>(p + begin * way, way, reach, query, found)) meet(found, begin);
     return hit;
   }
 
   // Cells in turn. Borders come from whole multiples of the period, so nothing drifts on long ways.
   const auto cell_at = [](double x, double period) { return std::floor(x / period); };
-  const Vec3 entry = p + begin * d;
+  const Vec3 entry = p + begin * way;
   double cx = cell_at(entry.x, width), cy = cell_at(entry.y, depth);
   std::uint64_t cells = 0;
   for (double t = begin; t <= end && cells < most_cells; ++cells) {
-    const double out_x = d.x > 0.0 ? ((cx + 1.0) * width - p.x) / d.x : d.x < 0.0 ? (cx * width - p.x) / d.x : infinity;
-    const double out_y = d.y > 0.0 ? ((cy + 1.0) * depth - p.y) / d.y : d.y < 0.0 ? (cy * depth - p.y) / d.y : infinity;
+    const double out_x = way.x > 0.0 ? ((cx + 1.0) * width - p.x) / way.x : way.x < 0.0 ? (cx * width - p.x) / way.x : infinity;
+    const double out_y = way.y > 0.0 ? ((cy + 1.0) * depth - p.y) / way.y : way.y < 0.0 ? (cy * depth - p.y) / way.y : infinity;
     const double out = std::min({out_x, out_y, end});
     const double back = t > 0.0 ? std::min(slack, t) : 0.0;  // but never behind the ray's own start
     query.cell = {static_cast<std::int32_t>(cx), static_cast<std::int32_t>(cy)};
     const double from = t - back, beyond = out < range ? slack : 0.0;
-    const Vec3 q{p.x + from * d.x - cx * width, p.y + from * d.y - cy * depth, p.z + from * d.z};
-    if (segment<any>(q, d, std::max(out - from + beyond, 0.0), query, found)) {
+    const Vec3 q{p.x + from * way.x - cx * width, p.y + from * way.y - cy * depth, p.z + from * way.z};
+    if (segment<any>(q, way, std::max(out - from + beyond, 0.0), query, found)) {
       meet(found, from);
       return hit;
     }
     if (out >= end) break;
-    if (out_x <= out_y) cx += d.x > 0.0 ? 1.0 : -1.0;
-    if (out_y <= out_x) cy += d.y > 0.0 ? 1.0 : -1.0;
+    if (out_x <= out_y) cx += way.x > 0.0 ? 1.0 : -1.0;
+    if (out_y <= out_x) cy += way.y > 0.0 ? 1.0 : -1.0;
     t = std::max(out, t);
   }
   return hit;

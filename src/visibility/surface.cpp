@@ -19,7 +19,8 @@ double Surface::longest_way(const Vec3& direction) const {
   const Vec3 size = focus.size();
   double way = glm::length(size) + (periodic ? size.z * 1e6 : 0.0);  // a level ray through a periodic scene has no end
   for (int axis = periodic ? 2 : 0; axis < 3; ++axis)
-    if (direction[axis] != 0.0) way = std::min(way, size[axis] / std::fabs(direction[axis]));
+    if (const double gain = axis == 2 && periodic ? periodic->above(direction) : direction[axis]; gain != 0.0)
+      way = std::min(way, size[axis] / std::fabs(gain));
   return way;
 }
 

@@ -74,7 +74,7 @@ void trace_lines(const Surface& surface, const Projection& p, LineBundle& bundle
     sort_sparse(bundle);
   else
     sort_dense(pixels, bundle);
-  const auto tolerance = static_cast<float>(surface.depth_tolerance * (p.wraps ? p.direction.z : 1.0));
+  const auto tolerance = static_cast<float>(surface.depth_tolerance * depth_per_length(surface, p));
   const auto above = [](const Fragment& a, const Fragment& b) { return a.depth < b.depth || (a.depth == b.depth && a.facet < b.facet); };
   for (std::size_t q = 0; q + 1 < bundle.start.size(); ++q) {
     Fragment* begin = sorted.data() + bundle.start[q];
@@ -100,7 +100,7 @@ void trace_lines(const Surface& surface, const Projection& p, LineBundle& bundle
     bundle.side[i] = 2 * sorted[i].cell + (sorted[i].facet & 1u ? 0u : 1u);
     bundle.depth[i] = sorted[i].depth;
   }
-  bundle.depth_to_length = p.wraps ? 1.0 / p.direction.z : 1.0;
+  bundle.depth_to_length = 1.0 / depth_per_length(surface, p);
 }
 
 }  // namespace sunfleck

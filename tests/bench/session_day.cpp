@@ -19,7 +19,7 @@ Scene later(Scene scene, double turn_deg) {
     if (state.sun) state.sun->direction = turned(state.sun->direction);
     if (state.sky && state.sky->sun) {
       state.sky->sun = turned(*state.sky->sun);
-      state.sky->clear_normalisation = 0;
+      state.sky->normalisation = 0;
     }
   }
   return scene;

@@ -1,6 +1,7 @@
 // Suns, skies and states that cannot be.
 #include <catch2/catch.hpp>
 
+#include <picture_files.hpp>
 #include <scene_files.hpp>
 
 using namespace sunfleck;
@@ -70,15 +71,12 @@ TEST_CASE("The sun's place is given once and whole", "[hostile][scene]") {
 }
 
 TEST_CASE("Skies that this version does not know are refused by name", "[hostile][scene]") {
-  CHECK(message("[sky]\nmodel = \"perez\"\nirradiance = { PAR = 1 }\n") ==
-        "scene.toml:3: sky.model: found \"perez\", which this version does not support; expected one of uniform, standard_overcast, clear, "
-        "file, "
-        "sphere");
   CHECK(message("[sky]\nmodel = \"unifrom\"\nirradiance = { PAR = 1 }\n") ==
-        "scene.toml:3: sky.model: found \"unifrom\"; expected one of uniform, standard_overcast, clear, file, sphere; did you mean "
+        "scene.toml:3: sky.model: found \"unifrom\"; expected one of uniform, standard_overcast, clear, perez, file, image, sphere; did "
+        "you mean "
         "\"uniform\"?");
   CHECK(message("[sky]\nirradiance = { PAR = 1 }\n") ==
-        "scene.toml:2: sky.model: found nothing; expected one of uniform, standard_overcast, clear, file, sphere");
+        "scene.toml:2: sky.model: found nothing; expected one of uniform, standard_overcast, clear, perez, file, image, sphere");
   CHECK(message("[sky]\nmodel = \"uniform\"\n") ==
         "scene.toml:2: sky.irradiance: found nothing; expected the irradiance per band, on an unobstructed horizontal plane");
   CHECK(message("[sky]\nmodel = \"clear\"\nirradiance = { PAR = 1 }\n") ==
@@ -143,4 +141,82 @@ TEST_CASE("A sky of directions is refused with file, line and key", "[hostile][s
   CHECK(sky(file, "x,y,z,radiance\n0,0,1,-1\n") == "sky.csv:2: found radiance -1; expected zero or more");
   CHECK(message("[sky]\nmodel = \"uniform\"\nfile = \"sky.csv\"\nirradiance = { PAR = 1 }\n") ==
         "scene.toml:4: sky.file: found `file` beside model = \"uniform\"; expected model = \"file\"");
+}
+
+TEST_CASE("Weather that is none is refused with file, line and key", "[hostile][scene][sky]") {
+  const auto perez = [](const std::string& keys,
+                        const std::string& before = "[sun]\nelevation = 40\nazimuth = 9\nirradiance = { PAR = 1 }\n") {
+    return message(before + "[sky]\nmodel = \"perez\"\nirradiance = { PAR = 1 }\n" + keys);
+  };
+  CHECK(perez("clearness = 2\n") == "scene.toml:6: sky.brightness: found nothing; expected a number above 0, as `clearness` is given");
+  CHECK(perez("clearness = 0.9\nbrightness = 0.1\n") == "scene.toml:9: sky.clearness: found 0.9; expected a number from 1 to 1000000");
+  CHECK(perez("clearness = 1.9\nbrightness = 0\n") == "scene.toml:10: sky.brightness: found 0; expected a number above 0");
+  CHECK(perez("clearness = nan\nbrightness = 0.1\n").find("scene.toml:9: sky.clearness: found nan; expected a") == 0);
+  CHECK(perez("direct = 100\n") ==
+        "scene.toml:6: sky.diffuse: found nothing; expected the sky's light on a horizontal plane [W m^-2], as `direct` is given");
+  CHECK(perez("direct = 100\ndiffuse = 0\n") == "scene.toml:10: sky.diffuse: found 0; expected a number above 0");
+  CHECK(perez("direct = 100\nclearness = 2\n").find("scene.toml:6: sky: found several kinds of weather; expected one of: `clearness`") ==
+        0);
+  CHECK(
+      perez("", "[sun]\nelevation = -4\nazimuth = 9\nirradiance = { PAR = 1 }\n") ==
+      "scene.toml:7: sky.model: found a perez sky with the sun below the horizon; expected a sun above the horizon, about which the perez "
+      "sky is built");
+  CHECK(perez("", "") ==
+        "scene.toml:3: sky.model: found a perez sky without a sun; expected a sun above the horizon, about which the perez sky is built");
+  CHECK(perez("", "units = { PAR = \"umol m-2 s-1\" }\n[sun]\nelevation = 40\nazimuth = 9\nirradiance = { PAR = 1 }\n") ==
+        "scene.toml:7: sky.direct: found nothing; expected `direct` and `diffuse` of all wavelengths [W m^-2], as a band counts photons");
+  CHECK(message("[sky]\nmodel = \"uniform\"\nclearness = 2\nirradiance = { PAR = 1 }\n") ==
+        "scene.toml:4: sky.clearness: found `clearness` beside model = \"uniform\"; expected model = \"perez\"");
+}
+
+TEST_CASE("Pictures that are no skies are refused with the file, and scenes with line and key", "[hostile][scene][sky]") {
+  const auto picture = [](const std::string& bytes, const std::string& keys = "", const std::string& before = "") {
+    const SceneFiles files(
+        "bands = [\"PAR\"]\n" + before + "[sky]\nmodel = \"image\"\nirradiance = { PAR = 1 }\nfile = \"sky.hdr\"\n" + keys,
+        {{"sky.hdr", bytes}});
+    return files.message();
+  };
+  const std::string hdr = hdr_bytes(64, 32, [](int r, int) { return r < 16 ? 1.0 : 0.0; });
+  const std::string png = png_bytes(64, 32, 8, [](int, int) { return 200; });
+  const std::string kinds = "; expected a picture in Radiance HDR, OpenEXR or PNG";
+  CHECK(picture(hdr) == "");
+  CHECK(picture(png) == "");
+  CHECK(picture("") == "sky.hdr: found an empty file" + kinds);
+  CHECK(picture("GIF89a") == "sky.hdr: found a file of another kind" + kinds);
+  for (const auto& whole : {hdr, png})
+    for (std::size_t n = 12; n + 1 < whole.size(); n += 1 + whole.size() / 97) {
+      if (n + 12 > whole.size() && whole == png) break;  // the end mark of a PNG carries nothing
+      CAPTURE(n);
+      CHECK(picture(whole.substr(0, n)).find("sky.hdr: found a broken picture (") == 0);
+    }
+  CHECK(picture(std::string("\x76\x2f\x31\x01\x02\x00\x00\x00 no channels", 22)).find("sky.hdr: found a broken EXR (") == 0);
+  CHECK(picture(hdr_bytes(32, 32, [](int, int) { return 1.0; })) ==
+        "sky.hdr: found 32 x 32 pixels; expected a picture of all directions (equirectangular), twice as wide as high, 4 to 8192 columns");
+  CHECK(picture("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1000000000 +X 2000000000\n").find("sky.hdr: found ") == 0);
+  CHECK(picture("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 16384 +X 32768\n").find("sky.hdr: found 32768 x 16384 pixels") == 0);
+  CHECK(picture(hdr_bytes(64, 32, [](int r, int) { return r < 16 ? 0.0 : 1.0; })) ==
+        "sky.hdr: found a picture that is dark above the horizon; expected some light there");
+  CHECK(picture(hdr, "turn = 400\n") == "scene.toml:6: sky.turn: found 400; expected a number from -360 to 360 degrees");
+  CHECK(picture(hdr, "sun = \"away\"\n").find("scene.toml:6: sky.sun: found \"away\"; expected one of keep, cut") == 0);
+  CHECK(picture(hdr, "sun = \"keep\"\n", "[sun]\ndirection = [0, 0, 1]\nirradiance = { PAR = 1 }\n") ==
+        "scene.toml:9: sky.sun: found \"keep\" beside [sun]; expected \"cut\", or no [sun]: there is one sun");
+  CHECK(picture(hdr, "directions = []\n") ==
+        "scene.toml:6: sky.directions: found `directions` beside model = \"image\"; expected model = \"file\"");
+  CHECK(message("[sky]\nmodel = \"image\"\nirradiance = { PAR = 1 }\n") ==
+        "scene.toml:2: sky.file: found nothing; expected a picture of the sky");
+  CHECK(
+      message("[sky]\nmodel = \"image\"\nfile = \"none.exr\"\nirradiance = { PAR = 1 }\n").find("scene.toml:4: sky.file: found no file ") ==
+      0);
+}
+
+TEST_CASE("Slopes that have no cell are refused", "[hostile][scene][slope]") {
+  const std::string sky = "[sky]\nmodel = \"uniform\"\nirradiance = { PAR = 1 }\n", cell = "[domain]\nperiodic = [0, 0, 1, 1]\n";
+  CHECK(message(cell + "slope = [0, inf]\n" + sky).find("scene.toml:4: domain.slope") == 0);
+  CHECK(message(cell + "slope = [0, nan]\n" + sky).find("scene.toml:4: domain.slope") == 0);
+  CHECK(message(cell + "slope = [0, 1e9]\n" + sky) ==
+        "scene.toml:4: domain.slope: found [0, 1000000000], a slope of 90.00 degrees; expected dz/dx and dz/dy of a slope of at most 10 "
+        "(84.29 "
+        "degrees): an upright plane has no cell");
+  CHECK(message(cell + "slope = 0.5\n" + sky).find("scene.toml:4: domain.slope: found 0.5; expected") == 0);
+  CHECK(message("[domain]\nslope = [0, 1]\n" + sky).find("scene.toml:2: domain.periodic: found nothing") == 0);
 }

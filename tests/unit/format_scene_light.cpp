@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include <picture_files.hpp>
 #include <scene_files.hpp>
 #include <sunfleck/light/split.hpp>
 
@@ -76,15 +77,19 @@ TEST_CASE("A sun below the horizon is no sun, with a note", "[format][scene]") {
 
 TEST_CASE("All sky models of this version can be named", "[format][scene]") {
   for (const std::string& name : sky_model_names()) {
-    const Scene scene =
-        read(band + "[sun]\ndirection = [0, 1, 1]\nirradiance = { PAR = 1 }\n[sky]\nmodel = \"" + name + "\"\nirradiance = { PAR = 50 }\n" +
-             (name == "file" ? "directions = [[0, 0, 1, 2.0], [1, 0, 0.1, 1.0]]\n" : ""));
+    const SceneFiles files(band + "[sun]\ndirection = [0, 1, 1]\nirradiance = { PAR = 1 }\n[sky]\nmodel = \"" + name +
+                               "\"\nirradiance = { PAR = 50 }\n" +
+                               (name == "file"    ? "directions = [[0, 0, 1, 2.0], [1, 0, 0.1, 1.0]]\n"
+                                : name == "image" ? "file = \"sky.hdr\"\n"
+                                                  : ""),
+                           {{"sky.hdr", hdr_bytes(8, 4, [](int, int) { return 1.0; })}});
+    const Scene scene = files.read();
     CHECK(name_of(scene.states[0].sky->model) == name);
   }
   const Scene clear =
       read(band + "[sun]\ndirection = [0, 1, 1]\nirradiance = { PAR = 1 }\n[sky]\nmodel = \"clear\"\nirradiance = { PAR = 50 }\n");
   CHECK(near(*clear.states[0].sky->sun, glm::normalize(Vec3{0, 1, 1})));
-  CHECK(clear.states[0].sky->clear_normalisation > 0);  // prepared
+  CHECK(clear.states[0].sky->normalisation > 0);  // prepared
 }
 
 TEST_CASE("States keep their order, names and durations", "[format][scene]") {

@@ -10,8 +10,8 @@ namespace sunfleck {
 
 /// Irradiance of one side of a plane under the open sky, over the sky's horizontal irradiance [-]:
 ///     E(n) = integral of r(d) max(0, n . d) over all directions.
-/// By 4096 directions for normals 3 degrees apart, between which it is linear: right to 0.1 % of the horizontal irradiance, and exact on a
-/// horizontal plane.
+/// By 4096 directions, or pieces of the sky, for normals 3 degrees apart, between which it is linear: right to 0.1 % of the horizontal
+/// irradiance for skies without a bright spot, and exact on a horizontal plane. A slope's own horizon is cut along pieces: .3 % more.
 class OpenSky {
  public:
   explicit OpenSky(const Sky& sky);

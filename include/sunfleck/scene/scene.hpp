@@ -20,8 +20,18 @@
 namespace sunfleck {
 
 /// The cell that repeats without end in x and y [m].
+/// On a slope its images stand at (width, 0, width slope_x) and (0, depth, depth slope_y): along an inclined plane without end.
 struct PeriodicCell {
   double x_low = 0, y_low = 0, x_high = 1, y_high = 1;
+  double slope_x = 0, slope_y = 0;  ///< dz/dx, dz/dy [-]
+  bool is_level() const { return slope_x == 0 && slope_y == 0; }
+  /// Out of the plane, as long as a vertical step of 1 brings: a point's height above the plane through the origin, the same in all images;
+  /// of a unit vector what it gains of it per metre, negative for those that lead into the slope. The plain z of a level cell.
+  double above(const Vec3& v) const { return v.z - slope_x * v.x - slope_y * v.y; }
+  /// The same vector in a frame whose z is above(): images of what stands on the plane become images of level cells.
+  Vec3 levelled(const Vec3& v) const { return {v.x, v.y, above(v)}; }
+  /// From a cell to its image some cells on in x and y.
+  Vec3 image(double x, double y) const { return {x * width(), y * depth(), x * width() * slope_x + y * depth() * slope_y}; }
   double width() const { return x_high - x_low; }
   double depth() const { return y_high - y_low; }
   double area() const { return width() * depth(); }

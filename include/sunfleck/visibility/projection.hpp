@@ -12,9 +12,9 @@ namespace sunfleck {
 /// A grid of parallel lines along `direction`. A point p (relative to the surface's origin) has pixel coordinates
 /// X = dot(x_row, p) + x0, Y = dot(y_row, p) + y0 and depth dot(z_row, p), which rises along the direction.
 /// Finite scenes: an orthonormal frame turned about the direction, fitted to the focus box. Periodic scenes: a sheared
-/// projection onto the horizontal, taken modulo the cell.
+/// projection onto the plane of the cell, taken modulo the cell.
 struct Projection {
-  Vec3 direction{0, 0, 1};  ///< unit vector, z > 0 in periodic scenes
+  Vec3 direction{0, 0, 1};  ///< unit vector, in periodic scenes out of the plane they repeat along
   Vec3 x_row{1, 0, 0}, y_row{0, 1, 0}, z_row{0, 0, 1};
   double x0 = 0, y0 = 0;
   int columns = 1, rows = 1;
@@ -28,6 +28,13 @@ Projection project_along(const Surface& surface, const Vec3& direction, double p
 /// Direction d of D, uniform in solid angle over the upper hemisphere: a spherical Fibonacci lattice (Marques et al. 2013,
 /// doi:10.1111/cgf.12190) turned by an angle that depends on the seed.
 Vec3 hemisphere_direction(std::uint32_t d, std::uint32_t count, std::uint64_t seed);
+
+/// A direction as lines of the surface can go along it: it or its opposite, whichever leads out of the plane that a periodic scene repeats
+/// along, not quite along it on a slope. Directions of the upper hemisphere stay as they are in all others.
+Vec3 along_lines(const Surface& surface, const Vec3& direction);
+
+/// How much depth a line of a projection gains per length.
+double depth_per_length(const Surface& surface, const Projection& projection);
 
 /// The projection number d of a set, its turn and shifts from a low-discrepancy sequence keyed by the seed.
 Projection project_set_member(const Surface& surface, const Vec3& direction, std::uint32_t d, double pitch, std::uint64_t seed);
