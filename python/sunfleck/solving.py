@@ -61,8 +61,8 @@ def solve(scene: Scene, *, quality: str | None = None, method: str | None = None
     """The light on all facets and organs of a scene. No process is started and no file written; other Python threads run on meanwhile, and
     Ctrl-C ends it.
 
-    quality: "draft", "standard" or "fine". method: "instantiation", "clustering", "flat", "direct" (no scattering), "reference" (path tracing,
-    samples= paths a facet); what suits the scene where it is left out. error: instead of a quality, the rms error of an organ's absorbed light
+    quality: "draft", "standard" or "fine". method: "instantiation", "clustering", "flat", "direct" (no scattering), "lattice" and
+    "occlusion" (approximate), "reference" (path tracing, samples= paths a facet); what suits the scene where it is left out. error: instead of a quality, the rms error of an organ's absorbed light
     over the mean, of all bands or per band, until which is solved. certificate: path-traces some organs to tell the error. seed of all sampling.
     threads: 0 is all cores; the bits are the same for any number. facets=False keeps organs only.
     Where the scene was read from a file, its [solve] fills in what is not said.

@@ -19,6 +19,7 @@ void define_compare(CLI::App& verb, CompareOptions& o);
 void define_export(CLI::App& verb, ExportOptions& o);
 void define_info(CLI::App& verb, InfoOptions& o);
 void define_render(CLI::App& verb, RenderOptions& o);
+void define_preview(CLI::App& verb, PreviewOptions& o);
 void define_view(CLI::App& verb, ViewOptions& o);
 
 // options_plant.cpp

@@ -55,6 +55,38 @@ void define_info(CLI::App& verb, InfoOptions& o) {
       "  sunfleck info plants/poplar.toml --json");
 }
 
+namespace {
+
+void define_camera(CLI::App& verb, CameraOptions& o) {
+  auto* eye = verb.add_option("--eye", o.eye, "camera position [m] (default as near as all plants are in the picture)")
+                  ->expected(3)
+                  ->type_name("X Y Z")
+                  ->check(number_between(-unlimited, unlimited));
+  verb.add_option("--target", o.target, "point that the camera looks at [m] (default the middle of the plants)")
+      ->expected(3)
+      ->type_name("X Y Z")
+      ->check(number_between(-unlimited, unlimited));
+  verb.add_option("--azimuth", o.azimuth_deg, "where the camera stands [degrees from north over east] (default 150)")
+      ->type_name("DEGREES")
+      ->check(number_between(-360, 360))
+      ->excludes(eye);
+  verb.add_option("--elevation", o.elevation_deg, "height of the camera above the horizon [degrees] (default 25)")
+      ->type_name("DEGREES")
+      ->check(number_between(-90, 90))
+      ->excludes(eye);
+  verb.add_option("--fov,--field-of-view", o.field_of_view_deg, "vertical opening of the camera [degrees] (default 35)")
+      ->type_name("DEGREES")
+      ->check(number_between(1, 120));
+  verb.add_flag("--orthographic", o.orthographic, "parallel projection instead of perspective");
+  verb.add_option("--width", o.width, "pixels (default 1200)")->type_name("N")->check(count_from(16, 16384));
+  verb.add_option("--height", o.height, "pixels (default 900)")->type_name("N")->check(count_from(16, 16384));
+  verb.add_option("--samples", o.samples, "rays per pixel, rounded up to a square number (default " + std::to_string(o.samples) + ")")
+      ->type_name("N")
+      ->check(count_from(1, 1024));
+}
+
+}  // namespace
+
 void define_render(CLI::App& verb, RenderOptions& o) {
   verb.add_option("RESULT", o.result, "result of 'sunfleck solve', HDF5")->required()->type_name("");
   verb.add_option("-o,--output", o.output,
@@ -81,31 +113,7 @@ void define_render(CLI::App& verb, RenderOptions& o) {
       ->type_name("LOW HIGH")
       ->check(number_between(-unlimited, unlimited));
   verb.add_flag("--log", o.logarithmic, "logarithmic map");
-  auto* eye = verb.add_option("--eye", o.eye, "camera position [m] (default as near as all plants are in the picture)")
-                  ->expected(3)
-                  ->type_name("X Y Z")
-                  ->check(number_between(-unlimited, unlimited));
-  verb.add_option("--target", o.target, "point that the camera looks at [m] (default the middle of the plants)")
-      ->expected(3)
-      ->type_name("X Y Z")
-      ->check(number_between(-unlimited, unlimited));
-  verb.add_option("--azimuth", o.azimuth_deg, "where the camera stands [degrees from north over east] (default 150)")
-      ->type_name("DEGREES")
-      ->check(number_between(-360, 360))
-      ->excludes(eye);
-  verb.add_option("--elevation", o.elevation_deg, "height of the camera above the horizon [degrees] (default 25)")
-      ->type_name("DEGREES")
-      ->check(number_between(-90, 90))
-      ->excludes(eye);
-  verb.add_option("--fov,--field-of-view", o.field_of_view_deg, "vertical opening of the camera [degrees] (default 35)")
-      ->type_name("DEGREES")
-      ->check(number_between(1, 120));
-  verb.add_flag("--orthographic", o.orthographic, "parallel projection instead of perspective");
-  verb.add_option("--width", o.width, "pixels (default 1200)")->type_name("N")->check(count_from(16, 16384));
-  verb.add_option("--height", o.height, "pixels (default 900)")->type_name("N")->check(count_from(16, 16384));
-  verb.add_option("--samples", o.samples, "rays per pixel, rounded up to a square number (default 9)")
-      ->type_name("N")
-      ->check(count_from(1, 1024));
+  define_camera(verb, o);
   verb.add_flag_callback(
       "--no-ground", [&o] { o.ground = false; }, "leave out the ground");
   verb.add_flag("--map-ground", o.map_ground, "colour the ground of a map by its values too");
@@ -133,8 +141,22 @@ void define_render(CLI::App& verb, RenderOptions& o) {
       "  sunfleck render draft.h5 -o error.png --quantity organ_error --reference fine.h5");
 }
 
+void define_preview(CLI::App& verb, PreviewOptions& o) {
+  verb.add_option("SCENE", o.scene, "scene file, TOML")->required()->type_name("");
+  verb.add_option("-o,--output", o.output, "picture to write")->required()->type_name("IMAGE.png");
+  verb.add_option("--state", o.state, "lighting state, by name or by number from 1 (default the first)")->type_name("NAME");
+  define_camera(verb, o);
+  verb.add_option("--threads", o.threads, "threads to use; 0 is all cores")->type_name("N")->check(count_from(0, 4096));
+  verb.footer(
+      "Shadows of the sun are traced, sky light is estimated from the shape of crowns ('solve --method occlusion'), scattered light is a\n"
+      "constant: to see whether plants stand upright and where they should. It says on the picture that it is a preview.\n\n"
+      "Examples:\n"
+      "  sunfleck preview field.toml -o field.png\n"
+      "  sunfleck preview field.toml -o top.png --elevation 90 --orthographic");
+}
+
 void define_view(CLI::App& verb, ViewOptions& o) {
-  verb.add_option("RESULT", o.result, "result of solve, .h5")->required()->type_name("");
+  verb.add_option("RESULT", o.result, "result of solve, .h5; or a scene, .toml, of which a preview is shown")->required()->type_name("");
   verb.add_option("OTHER", o.other, "a second result, to compare with the first")->type_name("");
   verb.add_option("--port", o.port, "port to serve on (default any that is free)")->type_name("N")->check(count_from(1, 65535));
   verb.add_option("--listen", o.listen, "address to serve on instead of this machine's loopback; needs --token")->type_name("ADDRESS");
@@ -145,6 +167,7 @@ void define_view(CLI::App& verb, ViewOptions& o) {
       "Prints the address to open in a browser, and serves until it is stopped (Ctrl-C).\n"
       "Examples:\n"
       "  sunfleck view stand.h5\n"
+      "  sunfleck view field.toml                  # before any solve: sun by rays, sky by occlusion, a constant for scattered light\n"
       "  sunfleck view standard.h5 reference.h5\n"
       "  sunfleck view stand.h5 --port 8600        # on a remote machine; here: ssh -L 8600:localhost:8600 THAT_MACHINE");
 }

@@ -7,7 +7,8 @@ namespace {
 
 constexpr const char* method_help =
     "how scattered light is found: 'instantiation' (each plant once, its copies through it), 'clustering' (cluster tree and links), 'flat' "
-    "(every facet with every other it sees), 'direct' (no scattering) or 'reference' (path tracing); the default is what the scene file "
+    "(every facet with every other it sees), 'direct' (no scattering), 'lattice' (scattered light as a fluid, approximate), 'occlusion' "
+    "(sky light from the shape of crowns, approximate) or 'reference' (path tracing); the default is what the scene file "
     "says, "
     "else instantiation where enough repeats and copies stand free of each other, else clustering";
 constexpr const char* quality_help = "accuracy against time: 'draft', 'standard' (the default) or 'fine'";
@@ -28,6 +29,19 @@ void define_solve(CLI::App& verb, SolveOptions& o) {
           "again as fine as its certificates and the distance between solves say it takes; exit code 3 where that does not reach it")
       ->type_name("ERROR");
   verb.add_option("--samples", o.samples, "reference method only: paths per facet")->type_name("N")->check(count_from(16, 4294967295.0));
+  verb.add_option(
+          "--lattice-mapping", o.lattice_mapping,
+          "method lattice only: how optics become its coefficients, 'matched' (to W m^-2; the default) or 'paper' (Geist & Steele 2008)")
+      ->type_name("NAME")
+      ->check(one_of({"matched", "paper"}));
+  verb.add_option("--lattice-nodes", o.lattice_nodes,
+                  "method lattice only: nodes along the longest side of the scene (default 32, 64 or 128 by quality)")
+      ->type_name("N")
+      ->check(count_from(2, 1024));
+  verb.add_option("--occlusion-model", o.occlusion_model,
+                  "method occlusion only: 'table' (exact for a ball of leaves; the default) or 'paper' (Hegeman et al. 2006)")
+      ->type_name("NAME")
+      ->check(one_of({"table", "paper"}));
   verb.add_option("--threads", o.threads, "threads to use; 0 is all cores. The result has the same bits for any number")
       ->type_name("N")
       ->check(count_from(0, 4096));

@@ -44,6 +44,7 @@ struct Verbs {
   ExportOptions exporting;
   ImportOptions importing;
   RenderOptions render;
+  PreviewOptions preview;
   ViewOptions view;
   GenerateOptions generate;
   InfoOptions info;
@@ -83,7 +84,8 @@ class Program {
     add("import", "a scene of AMAP (.ops) or CARIBU (.can, .opt, .light, .8) as a scene file", define_import, verbs_.importing,
         verb_import);
     add("render", "a picture of a result", define_render, verbs_.render, verb_render);
-    add("view", "an interactive viewer of a result, in the browser", define_view, verbs_.view, verb_view);
+    add("preview", "a picture of a scene in a second, without a solve", define_preview, verbs_.preview, verb_preview);
+    add("view", "an interactive viewer of a result, or of a scene before any, in the browser", define_view, verbs_.view, verb_view);
     add("info", "what a result, plant, species or scene file holds", define_info, verbs_.info, verb_info);
     add("originals", "which structures share an original, and its tables", define_originals, verbs_.originals, verb_originals);
     add("policy", "the policies in use, or one derived from the plants themselves", define_policy, verbs_.policy, verb_policy);

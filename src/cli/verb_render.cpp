@@ -12,6 +12,7 @@
 #include <sunfleck/core/timer.hpp>
 #include <sunfleck/view/stored.hpp>
 
+#include "cli/camera_settings.hpp"
 #include "cli/output_path.hpp"
 #include "cli/result_inputs.hpp"
 #include "cli/result_status.hpp"
@@ -19,12 +20,6 @@
 namespace sunfleck {
 
 namespace {
-
-std::optional<Vec3> point(const std::vector<double>& xyz, const char* option) {
-  if (xyz.empty()) return std::nullopt;
-  if (xyz.size() != 3) throw UsageError(fmt::format("{}: found {} numbers; expected three, x y z in metres", option, xyz.size()));
-  return Vec3{xyz[0], xyz[1], xyz[2]};
-}
 
 /// "y=0.5", or "x,y,z,nx,ny,nz".
 PictureCut cut_plane(const std::string& text) {
@@ -73,14 +68,8 @@ bool is_exr(const std::string& file) {
 }
 
 PictureSettings settings_of(const RenderOptions& options) {
-  PictureSettings s;
-  s.width = options.width, s.height = options.height, s.samples = options.samples;
+  PictureSettings s = settings_of_camera(options);
   s.infinite = options.infinite, s.map_ground = options.map_ground;
-  s.camera.eye = point(options.eye, "--eye"), s.camera.target = point(options.target, "--target");
-  s.camera.orthographic = options.orthographic;
-  if (options.azimuth_deg) s.camera.azimuth_deg = *options.azimuth_deg;
-  if (options.elevation_deg) s.camera.elevation_deg = *options.elevation_deg;
-  if (options.field_of_view_deg) s.camera.field_of_view_deg = *options.field_of_view_deg;
   s.views = options.views;
   if (!options.cut.empty()) s.cut = cut_plane(options.cut);
   if (options.background == "white") s.background = Background::white;

@@ -57,6 +57,9 @@ RunSettings run_of(const SolveOptions& options, const RunSettings& of_scene) {
   if (options.error) run.error = wanted_errors(*options.error);
   run.seed = options.seed;
   run.samples = options.samples;
+  run.lattice_mapping = options.lattice_mapping;
+  run.lattice_nodes = options.lattice_nodes;
+  run.occlusion_model = options.occlusion_model;
   run.threads = options.threads;
   if (!options.certificate) run.certificate = false;
   run.certificate_organs = options.certificate_organs;
@@ -70,9 +73,8 @@ void check_goal(const SolveOptions& options) {
   if (!options.error) return;
   if (options.quality) throw UsageError("--error: found with --quality; expected one of them, as --error chooses the densities itself");
   if (!options.certificate) throw UsageError("--error: found with --no-certificate; expected to be judged by the certificate");
-  if (options.method == "direct" || options.method == "reference")
-    throw UsageError(fmt::format("--error: found method '{}'; expected instantiation, clustering or flat ({})", *options.method,
-                                 options.method == "direct" ? "'direct' leaves scattered light out" : "'reference' takes samples"));
+  if (const auto why = why_not_judged(options.method.value_or("")); !why.empty())
+    throw UsageError(fmt::format("--error: found method '{}'; expected instantiation, clustering or flat ({})", *options.method, why));
 }
 
 void say_timings(const SolveReport& report, std::uint64_t facets, double seconds, Progress& progress) {

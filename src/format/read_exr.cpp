@@ -19,10 +19,10 @@ namespace sunfleck {
 
 namespace {
 
-/// Bytes in memory as OpenEXR reads a file.
-class Bytes : public Imf::IStream {
+/// ExrBytes in memory as OpenEXR reads a file.
+class ExrBytes : public Imf::IStream {
  public:
-  Bytes(const std::string& bytes, const std::string& name) : Imf::IStream(name.c_str()), bytes_(bytes) {}
+  ExrBytes(const std::string& bytes, const std::string& name) : Imf::IStream(name.c_str()), bytes_(bytes) {}
   bool read(char to[], int count) override {
     const auto n = static_cast<std::size_t>(std::max(count, 0));
     if (at_ > bytes_.size() || n > bytes_.size() - at_) throw std::runtime_error("its bytes end too early");
@@ -41,7 +41,7 @@ class Bytes : public Imf::IStream {
 }  // namespace
 
 Panorama read_exr(const std::string& bytes, const std::string& file) {
-  Bytes stream(bytes, file);
+  ExrBytes stream(bytes, file);
   try {
     Imf::InputFile in(stream, 0);  // no threads of its own
     const auto window = in.header().dataWindow(), shown = in.header().displayWindow();

@@ -9,8 +9,9 @@ TomlSchema output_schema() {
   return TomlSchema::of({"facets", "fields"});
 }
 TomlSchema solve_schema() {
-  return TomlSchema::of({"quality", "method", "seed", "certificate", "samples", "only"},
-                        {{"stop_at", TomlSchema::of({"size", "leaf_count"})}});
+  return TomlSchema::of(
+      {"quality", "method", "seed", "certificate", "samples", "only", "lattice_mapping", "lattice_nodes", "occlusion_model"},
+      {{"stop_at", TomlSchema::of({"size", "leaf_count"})}});
 }
 
 namespace {
@@ -50,6 +51,9 @@ void read_solve(const TomlValue& root, RunSettings& run) {
     run.quality = quality_from_name(quality->one_of({"draft", "standard", "fine"}));
   }
   if (const auto method = solve->get("method")) run.method = method->one_of(method_names());
+  if (const auto mapping = solve->get("lattice_mapping")) run.lattice_mapping = mapping->one_of({"matched", "paper"});
+  if (const auto nodes = solve->get("lattice_nodes")) run.lattice_nodes = static_cast<std::uint32_t>(nodes->integer(2, 1024));
+  if (const auto model = solve->get("occlusion_model")) run.occlusion_model = model->one_of({"table", "paper"});
   if (const auto seed = solve->get("seed"))
     run.seed = static_cast<std::uint64_t>(seed->integer(0, std::numeric_limits<std::int64_t>::max()));
   if (const auto certificate = solve->get("certificate")) run.certificate = certificate->flag();

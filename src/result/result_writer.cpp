@@ -213,7 +213,10 @@ class ResultWriter::Impl {
     }
     if (!irradiance_.empty()) irradiance_.front().append(s, irradiance, count);
     if (!absorbed_.empty()) absorbed_.front().append(s, floats_.data(), count);
-    if (sunlit && !sunlit_.empty()) sunlit_.front().append(s, sunlit, count);
+    if (!sunlit_.empty()) {
+      if (!sunlit) floats_.assign(2 * count, 0.0f);  // of a method that leaves the sun out
+      sunlit_.front().append(s, sunlit ? sunlit : floats_.data(), count);
+    }
     if (variance && facets_group_ && keeps("variance/facets")) {
       if (variance_.empty()) {
         variance_group_ = h5::open_or_make_group(file_, file_.id(), "variance");

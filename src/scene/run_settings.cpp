@@ -21,7 +21,7 @@ std::optional<Quality> quality_from_name(const std::string& name) {
 }
 
 const std::vector<std::string>& method_names() {
-  static const std::vector<std::string> names{"instantiation", "clustering", "flat", "direct", "reference"};
+  static const std::vector<std::string> names{"instantiation", "clustering", "flat", "direct", "lattice", "occlusion", "reference"};
   return names;
 }
 
@@ -44,6 +44,9 @@ RunSettings filled_up(RunSettings given, const RunSettings& defaults) {
   fill(given.certificate_organs, defaults.certificate_organs);
   fill(given.certificate_rays, defaults.certificate_rays);
   fill(given.samples, defaults.samples);
+  fill(given.lattice_mapping, defaults.lattice_mapping);
+  fill(given.lattice_nodes, defaults.lattice_nodes);
+  fill(given.occlusion_model, defaults.occlusion_model);
   if (given.depth.only.empty()) given.depth.only = defaults.depth.only;
   if (given.depth.stop_at.empty()) given.depth.stop_at = defaults.depth.stop_at;
   if (given.threads == 0) given.threads = defaults.threads;

@@ -32,6 +32,14 @@ std::string checked_method(const std::string& name) {
 
 }  // namespace
 
+std::string why_not_judged(const std::string& method) {
+  if (method == "direct") return "'direct' leaves scattered light out";
+  if (method == "lattice") return "'lattice' approximates scattered light";
+  if (method == "occlusion") return "'occlusion' estimates sky light alone";
+  if (method == "reference") return "'reference' takes samples";
+  return {};
+}
+
 MethodReason default_method(const Scene& scene, Quality quality, Progress& progress) {
   if (!scene.lamps.empty()) return {"clustering", "instantiation knows no lamps"};
   if (!scene.sensors.empty()) return {"clustering", "instantiation knows no sensors"};

@@ -55,17 +55,19 @@ void add_light(const Scene& scene, std::vector<PlanItem>& items) {
 
 /// Lamps and sensors: what a scene without them does not pay for.
 void add_devices(const Scene& scene, const std::string& method, std::vector<PlanItem>& items) {
-  const bool direct_only = method == "direct";
-  if (scene.lamps.empty()) {
-    items.push_back({"lamps", false, "the scene has none: no shadow rays to lamps, no tree of rays for them"});
+  const bool direct_only = method == "direct", sky_only = method == "occlusion";
+  if (sky_only || scene.lamps.empty()) {
+    items.push_back(
+        {"lamps", false,
+         sky_only ? "method 'occlusion' finds sky light alone" : "the scene has none: no shadow rays to lamps, no tree of rays for them"});
   } else {
     std::size_t copies = 0;
     for (const auto& lamp : scene.lamps) copies += lamp.placements.size();
     items.push_back(
         {"lamps", true, fmt::format("{}: shadow rays from every cell of the scene to points of lamps", counted(copies, "lamp", "lamps"))});
   }
-  if (scene.sensors.empty())
-    items.push_back({"sensors", false, "the scene has none"});
+  if (scene.sensors.empty() || sky_only || method == "lattice")
+    items.push_back({"sensors", false, scene.sensors.empty() ? "the scene has none" : fmt::format("method '{}' knows none", method)});
   else
     items.push_back({"sensors", true,
                      fmt::format("{}: rays {}, after the solve", counted(scene.sensors.size(), "sensor", "sensors"),
@@ -98,8 +100,10 @@ void add_geometry(const Scene& scene, const SceneCounts& counts, std::vector<Pla
 }
 
 void add_scattering(const Scene& scene, const std::string& method, std::vector<PlanItem>& items) {
-  const bool direct_only = method == "direct";
-  if (direct_only)
+  const bool direct_only = method == "direct" || method == "occlusion";
+  if (method == "occlusion")
+    items.push_back({"scattering", false, "method 'occlusion' estimates sky light alone: no links, no rays to leaves"});
+  else if (direct_only)
     items.push_back({"scattering", false, "method 'direct' stops at the light that arrives first"});
   else if (!scatters(scene))
     items.push_back({"scattering", false, "every surface is black in every band"});
@@ -107,7 +111,8 @@ void add_scattering(const Scene& scene, const std::string& method, std::vector<P
     items.push_back({"scattering", true, "paths traced from facets, with the variance of every mean"});
   else
     items.push_back({"scattering", true,
-                     method == "flat"            ? "every facet with every other it sees"
+                     method == "lattice"         ? "on a lattice of nodes, as a fluid: no links"
+                     : method == "flat"          ? "every facet with every other it sees"
                      : method == "instantiation" ? "inside originals by lines traced once, between copies by small fields of light"
                                                  : "links between clusters, chosen by their estimated error"});
   const bool passes = transmits(scene) && !direct_only;
@@ -215,8 +220,10 @@ std::uint64_t most_at_once(const std::vector<PlanFigure>& memory) {
 
 /// Elements, links and lines of the radiosity methods.
 void add_radiosity(const Scene& scene, const MethodChoice& choice, const RunSettings& run, Progress& progress, Plan& plan) {
-  if (choice.method == "reference") {
-    plan.items.push_back({"elements", false, "the reference traces paths facet by facet, without elements or links"});
+  if (choice.method == "reference" || choice.method == "occlusion") {
+    plan.items.push_back({"elements", false,
+                          choice.method == "reference" ? "the reference traces paths facet by facet, without elements or links"
+                                                       : "occlusion asks the shape of crowns alone: no elements, links or lines"});
     plan.at_once = most_at_once(plan.memory);
     return;
   }
@@ -248,7 +255,9 @@ void add_radiosity(const Scene& scene, const MethodChoice& choice, const RunSett
   add("direct_fragments", "lines meet surfaces, sun and sky", predicted.sky_fragments + predicted.sun_fragments);
   add("lamp_rays", "rays to lamps", predicted.lamp_rays);
   add("sensor_rays", "rays of sensors", predicted.sensor_rays);
-  if (choice.method == "direct") return;
+  if (choice.method == "lattice")
+    plan.memory.push_back({"lattice", "nodes of the lattice", lattice_bytes(scene, facets, lattice_settings(choice, run))});
+  if (choice.method == "direct" || choice.method == "lattice") return;
   add("fragments", "lines meet surfaces, scattering", predicted.line_fragments);
   add("clusters", "clusters", predicted.clusters);
   add("links", "links", predicted.links);
@@ -272,8 +281,12 @@ Plan plan_of(const Scene& scene, const MethodChoice& choice, const RunSettings& 
   if (program > 0) plan.memory.push_back({"program", "the program as it starts", program});
   if (!shares) {
     plan.memory.push_back({"plants", "plants as read", held_bytes(scene)});
-    plan.memory.push_back({"facets", "facets of all copies", expanded_bytes(plan.counts)});
-    plan.memory.push_back({"light", "light on every facet", facets * solution_bytes_per_facet(scene)});
+    if (choice.method == "occlusion") {
+      plan.memory.push_back({"crowns", "shells of crowns, and which of them every facet lies in", plan.counts.unique_facets});
+    } else {
+      plan.memory.push_back({"facets", "facets of all copies", expanded_bytes(plan.counts)});
+      plan.memory.push_back({"light", "light on every facet", facets * solution_bytes_per_facet(scene)});
+    }
     const std::uint64_t tree = tree_bytes(plan.counts);
     if (choice.method == "reference")
       plan.memory.push_back({"tree of rays", "tree of rays, to follow paths", tree});

@@ -50,7 +50,8 @@ std::optional<MethodChoice> SecondTry::next(const MethodChoice& failed) {
 }
 
 Aims aims_of(const MethodChoice& choice, const std::vector<double>& goal, const FacetRows& rows, const std::vector<ChosenOrgan>& chosen) {
-  if (choice.method == "direct" && scatters(rows.scene())) return {};
+  const bool complete = choice.method == "direct" && !scatters(rows.scene());
+  if (!complete && !why_not_judged(choice.method).empty()) return {};
   const bool wanted = !goal.empty();
   Aims aims{aimed_errors(rows, chosen, fineness_of(choice)), wanted ? fmt::format("fineness {:.2f} aims at", fineness_of(choice))
                                                                     : fmt::format("quality {} aims at", name_of(choice.quality))};

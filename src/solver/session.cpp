@@ -29,6 +29,7 @@ std::string run_key(const RunSettings& run, bool facets) {
   for (const auto& e : run.error) key.put(e.band), key.put(e.error);
   key.put(run.seed.value_or(1)), key.put(run.certificate.has_value()), key.put(run.certificate.value_or(true));
   key.put(run.certificate_organs.value_or(0)), key.put(run.certificate_rays.value_or(0)), key.put(run.samples.value_or(0));
+  key.put(run.lattice_mapping.value_or("")), key.put(run.lattice_nodes.value_or(0)), key.put(run.occlusion_model.value_or(""));
   key.put(run.depth.only), key.put(run.depth.stop_at.type), key.put(run.depth.stop_at.size.value_or(-1.0));
   key.put(run.depth.stop_at.leaf_count.value_or(0)), key.put(facets);
   return key.hex();

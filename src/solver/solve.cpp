@@ -15,6 +15,7 @@
 #include <sunfleck/solver/error_goal.hpp>
 
 #include "solver/bytes_of_scene.hpp"
+#include "solver/lattice_run.hpp"
 #include "solver/memory_need.hpp"
 #include "solver/method_settings.hpp"
 #include "solver/prepared_scene.hpp"
@@ -33,7 +34,8 @@ bool mostly_copies(const Scene& scene, const PlacedScene& placed) {
 }
 
 bool needs_facets(const MethodChoice& choice, const Scene& scene, const PlacedScene& placed) {
-  return choice.method != "instantiation" && !(choice.method == "reference" && (placed.partial || mostly_copies(scene, placed)));
+  return choice.method != "instantiation" && choice.method != "occlusion" &&
+         !(choice.method == "reference" && (placed.partial || mostly_copies(scene, placed)));
 }
 
 SolveReport run_method(const MethodChoice& choice, const RunSettings& run, const Scene& scene, const PlacedScene& placed,
@@ -45,6 +47,10 @@ SolveReport run_method(const MethodChoice& choice, const RunSettings& run, const
     settings.store = caller.operators;
     return solve_instantiation(scene, placed, settings, sink, progress);
   }
+  if (choice.method == "occlusion") return solve_occlusion(scene, placed, occlusion_settings(run), sink, progress);
+  if (choice.method == "lattice")
+    return solve_with_lattice(scene, *facets, radiosity_settings(choice, run), choice.quality == Quality::draft,
+                              lattice_settings(choice, run), sink, progress);
   if (choice.method != "reference") {
     auto settings = radiosity_settings(choice, run);
     settings.store = caller.transports;
@@ -91,9 +97,8 @@ std::string not_converged_text(const Scene& scene, const SolveReport& report) {
 void check_goal(const RunSettings& run, const MethodChoice& choice) {
   if (run.quality) throw UsageError("error: found with a quality; expected one of them, as a wanted error chooses the densities itself");
   if (!run.certificate.value_or(true)) throw UsageError("error: found without a certificate; expected to be judged by one");
-  if (choice.method == "direct" || choice.method == "reference")
-    throw UsageError(fmt::format("error: found method '{}'; expected instantiation, clustering or flat ({})", choice.method,
-                                 choice.method == "direct" ? "'direct' leaves scattered light out" : "'reference' takes samples"));
+  if (const auto why = why_not_judged(choice.method); !why.empty())
+    throw UsageError(fmt::format("error: found method '{}'; expected instantiation, clustering or flat ({})", choice.method, why));
 }
 
 /// One call of solve(): what is known before the first solve, and what solves one after another leave.

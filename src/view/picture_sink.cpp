@@ -44,6 +44,7 @@ void PictureSink::rows(const IrradianceRows& r) {
     std::copy_n(r.irradiance + from * width, (last - first) * width, irradiance_.data() + to * width);
     if (r.sunlit && !sunlit_.empty()) std::copy_n(r.sunlit + from * 2, (last - first) * 2, sunlit_.data() + to * 2);
   }
+  sun_came_ = sun_came_ || r.sunlit;
   arrived_ = end;
   if (next_) next_->rows(r);
 }
@@ -59,7 +60,7 @@ LightSource PictureSink::source() const {
   LightSource out;
   out.block = 64;
   out.bands = scene_.bands;
-  if (scene_.states[state_].sun) out.sun = *scene_.states[state_].sun;
+  if (scene_.states[state_].sun && (sun_came_ || arrived_ == 0)) out.sun = *scene_.states[state_].sun;
   out.irradiance = [this](std::size_t first, std::size_t count) { return part(irradiance_, 2 * scene_.band_count(), first, count); };
   if (!sunlit_.empty()) out.sunlit = [this](std::size_t first, std::size_t count) { return part(sunlit_, 2, first, count); };
   return out;

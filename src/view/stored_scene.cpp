@@ -45,6 +45,11 @@ std::size_t row_of(const std::string& what, const std::string& file, const std::
                                nearest.empty() ? "" : " (did you mean '" + nearest + "'?)"));
 }
 
+/// The sun of a state whose light is in the result: method occlusion leaves it out.
+std::optional<Sun> beam_of(const Result& result, std::size_t state) {
+  return result.header().method == "occlusion" ? std::nullopt : result.states().at(state).sun;
+}
+
 }  // namespace
 
 FacetScene stored_scene(const Result& result, bool ground) {
@@ -78,16 +83,20 @@ FacetScene stored_scene(const Result& result, bool ground) {
 }
 
 std::size_t state_row(const Result& result, const std::optional<std::string>& state) {
-  if (!state) return 0;
   std::vector<std::string> names;
   for (const auto& s : result.states()) names.push_back(s.name);
+  return state_row(std::move(names), result.file(), state);
+}
+
+std::size_t state_row(std::vector<std::string> names, const std::string& file, const std::optional<std::string>& state) {
+  if (!state) return 0;
   std::size_t number = 0;
   const auto [end, error] = std::from_chars(state->data(), state->data() + state->size(), number);
   const bool is_number = error == std::errc{} && end == state->data() + state->size() && number >= 1 && number <= names.size();
   if (is_number && std::find(names.begin(), names.end(), *state) == names.end()) return number - 1;
   for (std::size_t i = 0; i < names.size(); ++i)
     if (names[i].empty()) names[i] = std::to_string(i + 1);  // states without names go by their numbers
-  return row_of("state", result.file(), *state, names);
+  return row_of("state", file, *state, names);
 }
 
 std::size_t band_row(const Result& result, const std::optional<std::string>& band) {
@@ -100,7 +109,7 @@ std::size_t band_row(const Result& result, const std::optional<std::string>& ban
 LightSource stored_light(const Result& result, const DrawnScene& scene, std::size_t state) {
   const std::size_t b = result.bands().size();
   LightSource light;
-  light.bands = result.bands(), light.sun = result.states().at(state).sun;
+  light.bands = result.bands(), light.sun = beam_of(result, state);
   if (result.has("facets/irradiance")) {
     light.irradiance = [&result, state](std::size_t first, std::size_t count) {
       return result.state_rows<float>("facets/irradiance", state, first, count);
@@ -133,7 +142,7 @@ LightSource stored_light(const Result& result, const DrawnScene& scene, std::siz
 StateLight stored_light(const Result& result, const FacetScene& scene, std::size_t state) {
   const std::size_t n = scene.size(), b = result.bands().size();
   StateLight light;
-  light.bands = result.bands(), light.sun = result.states().at(state).sun;
+  light.bands = result.bands(), light.sun = beam_of(result, state);
   if (result.has("facets/irradiance")) {
     light.irradiance = result.state_rows<float>("facets/irradiance", state, 0, n);
     if (result.has("facets/sunlit")) light.sunlit = result.state_rows<float>("facets/sunlit", state, 0, n);

@@ -66,7 +66,9 @@ Row measure(double distance, std::uint32_t samples) {
   scene.ground = flat_ground({8 + distance, 8}, {0.5 * distance, 0}, {16, 16}, {0.12, 0.20});
   scene.states.resize(1);
   scene.states[0].sun = Sun{glm::normalize(Vec3{0.5, 0, 0.8}), {400, 400}, 0.53};
-  scene.states[0].sky = Sky{SkyModel::standard_overcast, {100, 80}, {}, {}, 1.0};
+  scene.states[0].sky.emplace();
+  scene.states[0].sky->model = SkyModel::standard_overcast;
+  scene.states[0].sky->irradiance = {100, 80};
   Stance first, second;
   second.position = {distance, 0, 0};
   second.turn_deg = 90;

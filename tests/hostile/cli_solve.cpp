@@ -48,7 +48,7 @@ std::vector<Broken> broken_scenes() {
       {"zero sun vector", scene(good_leaf, "direction = [0, 0, 0]\nirradiance = { PAR = 400.0, NIR = 400.0 }"), "scene.toml:3"},
       {"broken TOML", scene() + "[sky\n", "scene.toml:"},
       {"a method that does not exist", scene(good_leaf, good_sun, "leaf.obj", "[solve]\nmethod = \"radiance\"\n"),
-       "clustering, flat, direct, reference"},
+       "clustering, flat, direct, lattice, occlusion, reference"},
       {"NaN vertex", scene(), "leaf.obj:2", "leaf.obj", "v 0 0 0\nv nan 0 0\nv 1 1 0\nf 1 2 3\n"},
       {"index out of range", scene(), "leaf.obj:4", "leaf.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 9\n"},
       {"empty mesh", scene(), "leaf.obj", "leaf.obj", ""},

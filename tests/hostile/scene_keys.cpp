@@ -92,7 +92,7 @@ TEST_CASE("Wrong types say what was found and what was expected", "[hostile][sce
   CHECK(message(light + "[solve]\nquality = \"standart\"\n") ==
         "scene.toml:6: solve.quality: found \"standart\"; expected one of draft, standard, fine; did you mean \"standard\"?");
   CHECK(message(light + "[solve]\nmethod = \"radiosity\"\n") ==
-        "scene.toml:6: solve.method: found \"radiosity\"; expected one of instantiation, clustering, flat, direct, reference");
+        "scene.toml:6: solve.method: found \"radiosity\"; expected one of instantiation, clustering, flat, direct, lattice, occlusion, reference");
   CHECK(message(light + "[solve]\nseed = -1\n") == "scene.toml:6: solve.seed: found -1; expected a whole number of at least 0");
   CHECK(message(light + "[solve]\nsamples = 0\n") == "scene.toml:6: solve.samples: found 0; expected a whole number from 1 to 1073741824");
   CHECK(message(light + "[solve]\nsamples = 1.5\n") ==

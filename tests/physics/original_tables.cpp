@@ -261,7 +261,9 @@ TEST_CASE("What an original absorbs is what path tracing from its facets finds",
   scene.band_units = {"W m^-2"};
   scene.optics = geometry.materials;
   LightState state;
-  state.sky = Sky{SkyModel::sphere, {1.0}, {}, {}, 1.0};
+  state.sky.emplace();
+  state.sky->model = SkyModel::sphere;
+  state.sky->irradiance = {1.0};
   scene.states.push_back(state);
   std::vector<Mesh> organs;
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i)

@@ -53,7 +53,8 @@ Scene canopy_scene(std::vector<Mesh> leaves_of, double width, std::vector<Optics
 LightState unit_light(double zenith_deg, double azimuth_deg, std::size_t bands) {
   LightState state;
   if (zenith_deg < 0) {
-    state.sky = Sky{SkyModel::uniform, std::vector<double>(bands, 1.0), {}, {}, 1.0};
+    state.sky.emplace();
+    state.sky->irradiance.assign(bands, 1.0);
   } else {
     const double z = zenith_deg * std::numbers::pi / 180;
     state.sun = Sun{direction_from_angles(90 - zenith_deg, azimuth_deg), std::vector<double>(bands, 1 / std::cos(z)), 0};

@@ -62,10 +62,10 @@ TEST_CASE("a wanted error takes the place of the scene file's quality, and has a
 
 TEST_CASE("an unknown method names those there are", "[solver]") {
   CHECK_THROWS_WITH(chosen(with_method("radiance")),
-                    "method: found 'radiance'; expected one of instantiation, clustering, flat, direct, reference");
+                    "method: found 'radiance'; expected one of instantiation, clustering, flat, direct, lattice, occlusion, reference");
   CHECK_THROWS_WITH(
       chosen(with_method("clusterng")),
-      "method: found 'clusterng'; expected one of instantiation, clustering, flat, direct, reference (did you mean 'clustering'?)");
+      "method: found 'clusterng'; expected one of instantiation, clustering, flat, direct, lattice, occlusion, reference (did you mean 'clustering'?)");
   CHECK_THROWS_AS(chosen(with_method("clusterng")), UsageError);
 }
 

@@ -5,7 +5,7 @@ from . import svg
 from .figures import Point, curve, for_both, half_interval, mean, path_tracing
 
 AIMS = {'PAR': 1.0, 'NIR': 2.0}  # per cent: what times at equal error are compared at
-ORDER = ['instantiation', 'clustering', 'flat', 'direct', 'reference']
+ORDER = ['instantiation', 'clustering', 'flat', 'direct', 'lattice', 'occlusion', 'reference']
 LARGE = {'canopy_1m': 'canopy_50k', 'canopy_50k': 'canopy_5k'}  # noise against samples as on the smaller of the same kind
 
 

@@ -201,23 +201,37 @@ def dimmed(write):
     return dim
 
 
+def overcast(write):
+    """The same scene under its sky alone, without a sun."""
+
+    def sky(folder, root):
+        path = write(folder, root)
+        if path is None:
+            return None
+        text = re.sub(r'^\[sun\]\n(?:[^\[\n].*\n|\n)*', '', open(path).read(), flags=re.M)
+        return save(folder, 'sky_' + os.path.basename(path), text)
+
+    return sky
+
+
 def full():
     every = 'draft standard fine'
     return [
         SceneChoice('coffee', 'coffee, one plant of 118,798 facets on open ground (third-party)', coffee, 256,
                     jobs(3, clustering='draft standard fine*1 draft+*1 2%*4', flat='draft standard*2', instantiation='draft standard fine*1',
-                         direct='draft standard*1 fine*1', reference='16 64')),
+                         direct='draft standard*1 fine*1', lattice='draft standard*1', reference='16 64')),
         SceneChoice('wheat', 'wheat, 24 plants of 3 shapes in a periodic plot', wheat(3, 4, 2), 512,
                     jobs(3, clustering='draft standard fine*1 draft+*1 2%*4', flat='draft standard', instantiation='draft standard', direct='draft',
                          reference='16 128')),
         SceneChoice('canopy_5k', 'random canopy of 5,000 facets, periodic, LAI 3', canopy(5_000), 1024,
-                    jobs(3, clustering=every + ' draft+*1 1%*8 2%*4', flat=every + ' 2%*2', direct=every, reference='16 64 256')),
+                    jobs(3, clustering=every + ' draft+*1 1%*8 2%*4', flat=every + ' 2%*2', direct=every, lattice='draft standard*1', reference='16 64 256')),
         SceneChoice('canopy_50k', 'random canopy of 50,000 facets, periodic, LAI 3', canopy(50_000), 256,
                     jobs(3, clustering='draft standard*2 fine*1 draft+*1 2%*3', flat='draft standard*1', direct='draft', reference='16 64')),
         SceneChoice('poplar', 'one poplar of 112,528 facets on open ground', of_repository('plants/poplar_scene.toml'), 256,
                     jobs(3, clustering='draft standard fine*1 draft+*1 3%*4', flat='draft standard*1', instantiation='draft standard', direct='draft',
                          reference='16 64')),
         SceneChoice('coffee_dim', 'coffee, direct light alone', dimmed(coffee), 64, jobs(2, clustering='draft', direct='draft standard'), dim=True),
+        SceneChoice('coffee_sky', 'coffee, sky light alone', overcast(dimmed(coffee)), 64, jobs(2, direct='draft', occlusion='standard')),
         SceneChoice('canopy_5k_dim', 'canopy of 5,000 facets, direct light alone', dimmed(canopy(5_000)), 256,
                     jobs(3, clustering='draft', direct='draft standard'), dim=True),
         SceneChoice('canopy_50k_dim', 'canopy of 50,000 facets, direct light alone', dimmed(canopy(50_000)), 64,
@@ -225,7 +239,7 @@ def full():
         SceneChoice('poplar_dim', 'one poplar, direct light alone', dimmed(of_repository('plants/poplar_scene.toml')), 64,
                     jobs(2, clustering='draft', direct='draft standard'), dim=True),
         SceneChoice('grove', 'a grove of 16 copies of one poplar', grove(4, 5, 2.2), 32,
-                    jobs(2, clustering='draft standard*1', instantiation='draft standard fine*1 draft+*1 2%*4', direct='draft')),
+                    jobs(2, clustering='draft standard*1', instantiation='draft standard fine*1 draft+*1 2%*4', direct='draft', lattice='draft standard*1')),
         SceneChoice('ten_poplars', 'ten poplars, 1.2 million facets, no two alike', of_repository('plants/ten_poplars.toml'), 16,
                     jobs(1, clustering='draft standard', instantiation='draft standard fine draft+ 3%*2', direct='draft')),
         SceneChoice('canopy_1m', 'random canopy of 1,000,000 facets, periodic, LAI 3', canopy(1_000_000), 16,
@@ -236,7 +250,7 @@ def full():
 def quick():
     return [
         SceneChoice('canopy_5k', 'random canopy of 5,000 facets, periodic, LAI 3', canopy(5_000), 64,
-                    jobs(2, clustering='draft standard draft+ 2%', flat='draft', direct='draft', reference='16')),
+                    jobs(2, clustering='draft standard draft+ 2%', flat='draft', direct='draft', lattice='draft', reference='16')),
         SceneChoice('wheat_small', 'wheat, 8 plants of 2 shapes in a periodic plot', wheat(2, 2, 2), 16,
                     jobs(2, clustering='draft', instantiation='draft', direct='draft')),
         SceneChoice('canopy_5k_dim', 'canopy of 5,000 facets, direct light alone', dimmed(canopy(5_000)), 64,

@@ -2,8 +2,8 @@
 import math
 from html import escape
 
-COLOURS = {'instantiation': '#0b7a3b', 'clustering': '#1f5fbf', 'flat': '#b8860b', 'direct': '#8a8a8a', 'reference': '#c0392b'}
-MARKS = {'instantiation': 'square', 'clustering': 'circle', 'flat': 'triangle', 'direct': 'diamond', 'reference': 'cross'}
+COLOURS = {'instantiation': '#0b7a3b', 'clustering': '#1f5fbf', 'flat': '#b8860b', 'direct': '#8a8a8a', 'lattice': '#7a4bb5', 'occlusion': '#c06a1a', 'reference': '#c0392b'}
+MARKS = {'instantiation': 'square', 'clustering': 'circle', 'flat': 'triangle', 'direct': 'diamond', 'lattice': 'diamond', 'occlusion': 'square', 'reference': 'cross'}
 WIDTH, HEIGHT, LEFT, RIGHT, TOP, BOTTOM = 430, 330, 58, 14, 34, 46
 
 

@@ -17,7 +17,10 @@ struct SolveOptions {
   std::optional<std::string> method, quality;
   std::optional<std::string> error;  ///< wanted error, per organ: "2%", "0.02", "PAR=1%,NIR=2%"
   std::optional<std::uint64_t> seed;
-  std::optional<std::uint32_t> samples;  ///< reference method, per facet
+  std::optional<std::uint32_t> samples;        ///< reference method, per facet
+  std::optional<std::string> lattice_mapping;  ///< method lattice
+  std::optional<std::uint32_t> lattice_nodes;  ///< method lattice, along the longest side
+  std::optional<std::string> occlusion_model;  ///< method occlusion
   int threads = 0;
   std::optional<std::string> picture;  ///< .png that is drawn while rows come by
   std::vector<std::string> only;       ///< placements that are opened, as [solve] only
@@ -53,15 +56,19 @@ struct ExportOptions {
 };
 int verb_export(const ExportOptions& options, Progress& progress);
 
-struct RenderOptions {
+/// Where a picture is taken from, and its size.
+struct CameraOptions {
+  std::vector<double> eye, target;  ///< empty = frames the scene
+  std::optional<double> azimuth_deg, elevation_deg, field_of_view_deg;
+  bool orthographic = false;  ///< parallel projection
+  int width = 1200, height = 900, samples = 9;
+};
+
+struct RenderOptions : CameraOptions {
   std::string result, output;
   std::optional<std::string> quantity, band, state, colormap;  ///< quantity: "colour" or a stored quantity
-  std::vector<double> eye, target;                             ///< empty = frames the scene
-  std::optional<double> azimuth_deg, elevation_deg, field_of_view_deg;
-  std::vector<double> range;  ///< low, high; empty = from the data
-  int width = 1200, height = 900, samples = 9;
+  std::vector<double> range;                                   ///< low, high; empty = from the data
   bool logarithmic = false, ground = true;
-  bool orthographic = false;            ///< parallel projection
   bool map_ground = false;              ///< a map colours the ground by its values too
   bool infinite = false;                ///< a periodic scene is drawn with its repetition
   std::vector<std::string> views, rgb;  ///< rgb: names of three bands, as red, green and blue
@@ -72,8 +79,16 @@ struct RenderOptions {
 };
 int verb_render(const RenderOptions& options, Progress& progress);
 
+struct PreviewOptions : CameraOptions {
+  PreviewOptions() { samples = 4; }
+  std::string scene, output;
+  std::optional<std::string> state;
+  int threads = 0;
+};
+int verb_preview(const PreviewOptions& options, Progress& progress);
+
 struct ViewOptions {
-  std::string result;
+  std::string result;                        ///< or a scene, of which a preview is shown
   std::optional<std::string> other;          ///< to compare with it
   std::optional<std::string> listen, token;  ///< address other than the loopback; what requests must bring
   int port = 0;                              ///< 0 = any that is free

@@ -15,7 +15,7 @@ std::string name_of(Quality quality);
 /// "draft", "standard" or "fine"; nothing for any other text.
 std::optional<Quality> quality_from_name(const std::string& name);
 
-/// Names of methods: "instantiation", "clustering", "flat", "direct", "reference".
+/// Names of methods: "instantiation", "clustering", "flat", "direct", "lattice", "occlusion", "reference".
 const std::vector<std::string>& method_names();
 
 /// An rms error of an organ's absorbed light over the mean that is wanted in a band; in all of them, where `band` is empty.
@@ -34,6 +34,9 @@ struct RunSettings {
   std::optional<std::uint32_t> certificate_organs;  ///< that are traced; nothing: 240
   std::optional<std::uint64_t> certificate_rays;    ///< that are spent on them, about; nothing: by the size of the scene
   std::optional<std::uint32_t> samples;             ///< method reference: paths per facet
+  std::optional<std::string> lattice_mapping;        ///< method lattice: "matched" or "paper"; nothing: matched
+  std::optional<std::uint32_t> lattice_nodes;        ///< method lattice: along the longest side; nothing: by the quality
+  std::optional<std::string> occlusion_model;       ///< method occlusion: "table" or "paper"; nothing: table
   Depth depth;                                      ///< which placements are opened, and down to what
   int threads = 0;                                  ///< 0: all cores. Results have the same bits for any number
 };

@@ -22,6 +22,10 @@ struct MethodChoice {
 /// method that does not exist.
 MethodChoice choose_method(const RunSettings& run, const Scene& scene, Progress& progress);
 
+/// Why an error cannot be asked of a method, nor its certificate judge it: it leaves light out, or takes samples. Empty for methods that
+/// solve for all light.
+std::string why_not_judged(const std::string& method);
+
 /// The method for a scene that nobody names one for: instantiation where much repeats and copies do not reach into each other (traces a
 /// pilot of few lines to find out), else clustering. `why` says it for people.
 struct MethodReason {

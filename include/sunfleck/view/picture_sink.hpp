@@ -39,6 +39,7 @@ class PictureSink final : public IrradianceSink {
   std::vector<Range> ranges_;  ///< rising, apart
   std::vector<float> irradiance_, sunlit_;
   std::size_t arrived_ = 0;  ///< rows
+  bool sun_came_ = false;    ///< rows say what the sun reaches: a method may leave it out
 };
 
 }  // namespace sunfleck

@@ -16,6 +16,8 @@ FacetScene stored_scene(const Result& result, bool ground = true);
 
 /// Row of a state by its name, or by its number counted from 1; the first where none is given. Throws UsageError with the nearest name.
 std::size_t state_row(const Result& result, const std::optional<std::string>& state);
+/// The same of states' names in the order of a scene; `file` for errors.
+std::size_t state_row(std::vector<std::string> names, const std::string& file, const std::optional<std::string>& state);
 /// Row of a band by its name; where none is given that of PAR, else the first. Throws UsageError with the nearest name.
 std::size_t band_row(const Result& result, const std::optional<std::string>& band);
 

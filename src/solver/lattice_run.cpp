@@ -1,0 +1,32 @@
+#include "solver/lattice_run.hpp"
+
+#include <algorithm>
+
+#include <sunfleck/light/sky_parts.hpp>
+
+#include "solver/direct_rays.hpp"
+
+namespace sunfleck {
+
+SolveReport solve_with_lattice(const Scene& scene, const FacetScene& facets, const RadiositySettings& direct, bool rough,
+                               const LatticeSettings& lattice, IrradianceSink& sink, Progress& progress) {
+  KeptLight kept(scene.states.size(), facets.size(), scene.band_count());
+  Stopwatch watch;
+  const RayScene rays(facets);
+  const double tree_seconds = watch.seconds();
+  // at draft rays are enough: they cost as much as facets, where lines cost as much as directions times facets
+  const bool detail =
+      std::any_of(scene.states.begin(), scene.states.end(), [](const LightState& s) { return s.sky && has_detail(*s.sky); });
+  const bool by_rays = rough && scene.lamps.empty() && !detail;
+  const auto first = by_rays ? direct_by_rays(scene, facets, rays, {{lattice.seed, lattice.threads}}, kept, progress)
+                             : solve_radiosity(scene, facets, direct, kept, progress);
+  auto report = solve_lattice(scene, facets, {kept, first.balance, rays}, lattice, sink, progress);
+  report.timings.insert(report.timings.begin(), first.timings.begin(), first.timings.end());
+  report.counts.insert(report.counts.begin(), first.counts.begin(), first.counts.end());
+  report.memory.insert(report.memory.begin(), first.memory.begin(), first.memory.end());
+  report.timings.emplace(report.timings.begin(), "tree of rays", tree_seconds);
+  report.memory.emplace_back("tree of rays", rays.bytes());
+  return report;
+}
+
+}  // namespace sunfleck
