@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include <Eigen/Eigenvalues>
+#include <tbb/parallel_invoke.h>
 
 namespace sunfleck {
 
@@ -105,7 +106,7 @@ class Splitting {
   };
   struct Found {
     std::vector<Part> parts;
-    double volume;
+    double volume = 0;
   };
 
   AreaMoments sum(std::size_t begin, std::size_t end) const {
@@ -126,8 +127,8 @@ class Splitting {
                               [&](std::uint32_t r) { return glm::dot(axis, runs_[r].centre()) < middle; });
     const auto cut = static_cast<std::size_t>(at - order_.begin());
     if (cut - begin < fewest_runs || end - cut < fewest_runs) return whole;
-    Found low = split(begin, cut, level + 1);
-    const Found high = split(cut, end, level + 1);
+    Found low, high;
+    tbb::parallel_invoke([&] { low = split(begin, cut, level + 1); }, [&] { high = split(cut, end, level + 1); });
     if (low.volume + high.volume > worth_splitting * whole.volume) return whole;
     low.parts.insert(low.parts.end(), high.parts.begin(), high.parts.end());
     low.volume += high.volume;

@@ -71,16 +71,11 @@ void OccludedSky::find_layer(const FacetRows& rows) {
   const double ground_area = periodic ? periodic->area() : size.x * size.y;
   const bool low = periodic || size.z < lowest_stand * std::min(size.x, size.y);
   if (!low || !(covered > covering * ground_area)) return;
-  Box leaves;
-  const auto each = [&](auto&& visit) {
-    for (std::uint32_t copy = 0; copy < rows.placed().copies.size(); ++copy)
-      rows.visit(copy, 0, rows.facet_count(copy), [&](std::uint64_t, const Triangle& t, std::uint32_t, std::uint32_t) { visit(t); });
-  };
-  each([&](const Triangle& t) {
-    for (const auto& p : t) leaves.add(p);
-  });
-  profile_.emplace(leaves.low.z, leaves.high.z, ground_area);
-  each([&](const Triangle& t) { profile_->add((t[0].z + t[1].z + t[2].z) / 3.0, glm::length(area_vector(t))); });
+  profile_.emplace(box.low.z, box.high.z, ground_area);
+  for (std::uint32_t copy = 0; copy < rows.placed().copies.size(); ++copy)
+    rows.visit(copy, 0, rows.facet_count(copy), [&](std::uint64_t, const Triangle& t, std::uint32_t, std::uint32_t) {
+      profile_->add((t[0].z + t[1].z + t[2].z) / 3.0, glm::length(area_vector(t)));
+    });
   profile_->finish();
 }
 

@@ -14,7 +14,8 @@ namespace {
 
 std::string scene(const std::string& light, const std::string& more = "") {
   return "bands = [\"PAR\"]\n" + light +
-         "[optics.leaf]\nreflectance = { PAR = 0.1 }\ntransmittance = { PAR = 0.05 }\n[ground]\nsize = [2, 2]\nreflectance = { PAR = 0.1 }\n"
+         "[optics.leaf]\nreflectance = { PAR = 0.1 }\ntransmittance = { PAR = 0.05 }\n[ground]\nsize = [2, 2]\nreflectance = { PAR = 0.1 "
+         "}\n"
          "[[plant]]\nname = \"leaf\"\nfile = \"leaf.obj\"\noptics = { \"*\" = \"leaf\" }\nplace = [ { position = [0, 0, 0] } ]\n" +
          more;
 }
@@ -124,4 +125,28 @@ TEST_CASE("a preview is a picture without a solve", "[preview]") {
   // without sky the sun alone, and lamps and sensors are no reason to fail
   const Folder sensing(scene(sun, "[[sensor]]\nname = \"s\"\ngrid = { z = 1, cells = [1, 1] }\n"));
   CHECK(run_sunfleck({"preview", sensing.scene_file, "-o", sensing.path("p.png"), "--width", "64", "--height", "48"}).exit_code == 0);
+}
+
+TEST_CASE("a scene is viewed before any solve, and nothing of that stays", "[preview]") {
+  const Folder folder(scene(sun + sky));
+  std::filesystem::create_directory(folder.path("tmp"));
+  ProgramFate fate;
+  fate.stop_at = "ready after";
+  fate.environment = {"TMPDIR=" + folder.path("tmp")};
+  const auto run = run_sunfleck({"view", folder.scene_file}, fate);
+  CHECK(run.exit_code == 0);
+  CHECK(contains(run.err, "preview, not a solve"));
+  CHECK(contains(run.out, "http://127.0.0.1:"));
+  CHECK(std::filesystem::is_empty(folder.path("tmp")));
+  CHECK(run_sunfleck({"view", folder.path("none.toml")}).exit_code == 2);
+}
+
+TEST_CASE("a picture of occlusion's light has no shadow of a sun that is not in it", "[occlusion]") {
+  const Folder with_sun(scene(sun + sky)), without(scene(sky));
+  for (const auto* folder : {&with_sun, &without}) {
+    CHECK(folder->solve({"--method", "occlusion", "--picture", folder->path("a.png")}).exit_code == 0);
+    CHECK(run_sunfleck({"render", folder->path("out.h5"), "-o", folder->path("b.png"), "--width", "64", "--height", "48"}).exit_code == 0);
+  }
+  CHECK(text_of(with_sun.path("a.png")) == text_of(without.path("a.png")));
+  CHECK(text_of(with_sun.path("b.png")) == text_of(without.path("b.png")));
 }
