@@ -24,12 +24,14 @@ double recollision(const FacetScene& facets, std::size_t leaf_facets, const std:
           static_cast<std::size_t>(std::upper_bound(above.begin(), above.end(), at) - above.begin()) - 1, leaf_facets - 1));
       const auto place = r2_point(i), towards = r2_point(i, unit_interval(mix(1)), unit_interval(mix(2)));
       const bool front = sides[f] == OpenSides::front || (sides[f] == OpenSides::both && (mix(i) & 1u) == 0);
-      const Triangle t = rays.met_corners({0, f});
+      const CopyFacet start = rays.at(f);
+      const Triangle t = rays.met_corners(start);
       const double root = std::sqrt(place[0]);
       const Vec3 origin = t[0] + root * (1.0 - place[1]) * (t[1] - t[0]) + root * place[1] * (t[2] - t[0]);
       const Vec3 normal = glm::normalize(area_vector(facets.corners[f]));
-      const RayHit hit = rays.first_hit(origin, cosine_direction(front ? normal : -normal, towards[0], towards[1]), f);
-      if (hit && hit.facet < leaf_facets) ++met[b];
+      const RayHit hit = rays.first_hit(origin, cosine_direction(front ? normal : -normal, towards[0], towards[1]), start);
+      const bool low = hit && leaf_facets < facets.size() && rays.material(hit.where()) + 1 == rays.materials().size();
+      if (hit && !low) ++met[b];
     }
   });
   std::size_t all = 0;

@@ -77,7 +77,8 @@ class DirectRays {
   std::size_t bands() const { return scene_.band_count(); }
 
   void trace(const RayScene& world, std::uint32_t f, std::vector<double>& sky, std::vector<double>& lit, std::vector<double>& beam) const {
-    const Triangle t = world.met_corners({0, f});
+    const CopyFacet start = world.at(f);
+    const Triangle t = world.met_corners(start);
     const Vec3 normal = glm::normalize(area_vector(facets_.corners[f]));
     for (auto* values : {&sky, &lit, &beam}) std::fill(values->begin(), values->end(), 0.0);
     for (std::uint32_t r = 0; r < rays_; ++r) {
@@ -90,7 +91,7 @@ class DirectRays {
         const double z = round_ ? 1.0 - 2.0 * towards[0] : towards[0], s = std::sqrt(std::max(0.0, 1.0 - z * z));
         const Vec3 d{s * std::cos(2.0 * pi * towards[1]), s * std::sin(2.0 * pi * towards[1]), z};
         const double cosine = glm::dot(normal, d);
-        if (cosine != 0.0 && !world.occluded(origin, d, {0, f}))
+        if (cosine != 0.0 && !world.occluded(origin, d, start))
           for (std::size_t k = 0; k < sources_.skies.size(); ++k)
             sky[2 * k + (cosine > 0.0 ? 0 : 1)] +=
                 (round_ ? 4.0 : 2.0) * pi / rays_ * sources_.skies[k]->relative_radiance(d) * std::abs(cosine);
@@ -98,7 +99,7 @@ class DirectRays {
       for (std::size_t k = 0; k < sources_.suns.size(); ++k) {
         const Vec3 d = discs_[k][mix(number) % discs_[k].size()];
         const double cosine = glm::dot(normal, d);
-        if (cosine == 0.0 || world.occluded(origin, d, {0, f})) continue;
+        if (cosine == 0.0 || world.occluded(origin, d, start)) continue;
         lit[2 * k + (cosine > 0.0 ? 0 : 1)] += 1.0 / rays_;
         beam[2 * k + (cosine > 0.0 ? 0 : 1)] += std::abs(cosine) / rays_;
       }

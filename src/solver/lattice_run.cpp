@@ -8,11 +8,13 @@
 
 namespace sunfleck {
 
-SolveReport solve_with_lattice(const Scene& scene, const FacetScene& facets, const RadiositySettings& direct, bool rough,
-                               const LatticeSettings& lattice, IrradianceSink& sink, Progress& progress) {
+SolveReport solve_with_lattice(const Scene& scene, const PlacedScene& placed, const FacetScene& facets, const RadiositySettings& direct,
+                               bool rough, const LatticeSettings& lattice, IrradianceSink& sink, Progress& progress) {
   KeptLight kept(scene.states.size(), facets.size(), scene.band_count());
   Stopwatch watch;
-  const RayScene rays(facets);
+  const FacetRows rows(scene, placed);
+  const bool copies = placed.copies.size() > scene.plants.size();  // whose tree is that of their plants
+  const RayScene rays = copies ? RayScene(rows) : RayScene(facets);
   const double tree_seconds = watch.seconds();
   // at draft rays are enough: they cost as much as facets, where lines cost as much as directions times facets
   const bool detail =

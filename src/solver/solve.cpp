@@ -49,7 +49,7 @@ SolveReport run_method(const MethodChoice& choice, const RunSettings& run, const
   }
   if (choice.method == "occlusion") return solve_occlusion(scene, placed, occlusion_settings(run), sink, progress);
   if (choice.method == "lattice")
-    return solve_with_lattice(scene, *facets, radiosity_settings(choice, run), choice.quality == Quality::draft,
+    return solve_with_lattice(scene, placed, *facets, radiosity_settings(choice, run), choice.quality == Quality::draft,
                               lattice_settings(choice, run), sink, progress);
   if (choice.method != "reference") {
     auto settings = radiosity_settings(choice, run);
