@@ -16,10 +16,10 @@ SolveReport solve_with_lattice(const Scene& scene, const PlacedScene& placed, co
   const bool copies = placed.copies.size() > scene.plants.size();  // whose tree is that of their plants
   const RayScene rays = copies ? RayScene(rows) : RayScene(facets);
   const double tree_seconds = watch.seconds();
-  // at draft rays are enough: they cost as much as facets, where lines cost as much as directions times facets
+  // Where copies make up a draft, rays through their tree cost as much as facets; lines cost as much as directions times facets.
   const bool detail =
       std::any_of(scene.states.begin(), scene.states.end(), [](const LightState& s) { return s.sky && has_detail(*s.sky); });
-  const bool by_rays = rough && scene.lamps.empty() && !detail;
+  const bool by_rays = rough && copies && scene.lamps.empty() && !detail;
   const auto first = by_rays ? direct_by_rays(scene, facets, rays, {{lattice.seed, lattice.threads}}, kept, progress)
                              : solve_radiosity(scene, facets, direct, kept, progress);
   auto report = solve_lattice(scene, facets, {kept, first.balance, rays}, lattice, sink, progress);

@@ -248,6 +248,8 @@ was traced once the shape of that curve is the next smaller one's. Ours are inte
 
 `instantiation` is the program's own choice only where copies repeat and stand free ([instantiation](instantiation.md)); it runs here on other scenes too (`coffee` and `poplar` repeat nothing, plants of
 `wheat` reach into each other), to show what it gives there.
+
+`lattice` and `occlusion` are approximate and run beside the others on some scenes, to show what such shortcuts are worth ([how wrong they are](approximate-methods.md)).
 ''' % (self.command, m['machine'], m['compiler'], m['commit'], m['isa'], m['threads']),
                  '## What the figures say', self.claims(), '\n### CPU seconds for 1 % PAR and 2 % NIR per organ', self.equal_error(), '\n### Where we lose', self.losses()]
         rows = self.direct_rows()
