@@ -83,7 +83,6 @@ class LatticeSolver {
       watch = {};
     };
     const NodeGrid grid = stand_grid(scene_, facets_, settings_.nodes);
-    check_memory(grid);
     sides_ = open_sides(facets_);
     cells_ = FacetCells(grid, scene_.periodic.has_value(), facets_.size(), leaf_facets_, [&](std::size_t f) { return facets_.corners[f]; });
     make_medium(grid);
@@ -117,15 +116,6 @@ class LatticeSolver {
     return scattered_[(column * facets_.size() + facet) * 2 + side];
   }
 
-  void check_memory(const NodeGrid& grid) const {
-    const std::uint64_t bytes = bytes_of(grid, scene_, settings_);
-    const auto free = free_memory();
-    if (bytes > free.bytes || nodes_of(grid, flat_) > most_nodes_in_all)
-      throw OutOfMemory(fmt::format("a lattice of {} x {} x {} nodes takes {}, {} {} are free; fewer nodes along the longest side than {}",
-                                    grid.n[0], grid.n[1], grid.n[2], bytes_text(static_cast<double>(bytes)),
-                                    bytes_text(static_cast<double>(free.bytes)), free.limit, settings_.nodes));
-  }
-
   void make_medium(const NodeGrid& grid) {
     std::vector<NodeArea> leaves;
     for (std::size_t f = 0; f < leaf_facets_; ++f)
@@ -140,7 +130,7 @@ class LatticeSolver {
                             settings_.mapping, density, black, black ? 1 : bands());
     };
     if (settings_.mapping == LatticeMapping::matched && !leaves.empty()) {
-      const double wanted = recollision(facets_, leaf_facets_, sides_, direct_.rays);
+      const double wanted = recollision(facets_, leaf_facets_, sides_, *direct_.rays);
       density_ = matching_density(wanted, [&](double density) { return recollision(medium(density, true), leaves, progress_); });
       progress_.line(
           fmt::format("lattice: leaves meet {:.1f} % of each other's light, as {:.2f} times their area would", 100.0 * wanted, density_));
@@ -357,9 +347,19 @@ std::uint64_t lattice_bytes(const Scene& scene, const FacetScene& facets, const 
   return bytes_of(stand_grid(scene, facets, settings.nodes), scene, settings);
 }
 
+void check_lattice(const Scene& scene, const FacetScene& facets, const LatticeSettings& settings) {
+  check_scene_for_lattice(scene, settings);
+  const NodeGrid grid = stand_grid(scene, facets, settings.nodes);
+  const std::uint64_t bytes = bytes_of(grid, scene, settings);
+  const auto free = free_memory();
+  if (bytes > free.bytes || nodes_of(grid, has_flat_ground(scene)) > most_nodes_in_all)
+    throw OutOfMemory(fmt::format("a lattice of {} x {} x {} nodes takes {}, {} {} are free; fewer nodes along the longest side than {}",
+                                  grid.n[0], grid.n[1], grid.n[2], bytes_text(static_cast<double>(bytes)),
+                                  bytes_text(static_cast<double>(free.bytes)), free.limit, settings.nodes));
+}
+
 SolveReport solve_lattice(const Scene& scene, const FacetScene& facets, const DirectFacets& direct, const LatticeSettings& settings,
                           IrradianceSink& sink, Progress& progress) {
-  check_scene_for_lattice(scene, settings);
   std::optional<tbb::global_control> control;
   if (settings.threads > 0) control.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(settings.threads));
   return LatticeSolver(scene, facets, direct, settings, sink, progress).run();

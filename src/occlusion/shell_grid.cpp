@@ -39,10 +39,10 @@ ShellGrid::ShellGrid(std::vector<CrownShell> shells, const std::optional<Periodi
         std::clamp<std::int64_t>(static_cast<std::int64_t>(std::min(extent / std::max(wanted, 1e-9), 1e6)), 1, most_columns_a_side);
     cell_[axis] = extent / static_cast<double>(cells_[axis]);
   }
-  fill(periodic_);
+  fill();
 }
 
-void ShellGrid::fill(bool periodic) {
+void ShellGrid::fill() {
   const auto columns = static_cast<std::size_t>(cells_[0] * cells_[1]);
   std::vector<std::pair<std::uint32_t, Entry>> all;
   for (std::uint32_t s = 0; s < shells_.size(); ++s) {
@@ -52,7 +52,7 @@ void ShellGrid::fill(bool periodic) {
       const double at = shells_[s].centre[axis] - box_.low[axis];
       low[axis] = static_cast<std::int64_t>(std::floor((at - half[axis]) / cell_[axis]));
       high[axis] = static_cast<std::int64_t>(std::floor((at + half[axis]) / cell_[axis]));
-      if (!periodic)
+      if (!periodic_)
         low[axis] = std::clamp<std::int64_t>(low[axis], 0, cells_[axis] - 1),
         high[axis] = std::clamp<std::int64_t>(high[axis], 0, cells_[axis] - 1);
     }

@@ -32,7 +32,7 @@ class ShellGrid {
   };
   double in_column(std::size_t column, const Vec3& origin, const Vec3& direction, double from, double to, std::array<std::int64_t, 2> wraps,
                    std::uint32_t own) const;
-  void fill(bool periodic);
+  void fill();
 
   std::vector<CrownShell> shells_;
   std::vector<double> extinction_;

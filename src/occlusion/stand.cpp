@@ -19,10 +19,6 @@ constexpr double lowest_stand = 0.25;  // height over width of a finite one
 constexpr double tables_per_e = 50.0;  // tables of optical radii closer than 2 % are shared
 constexpr int most_points_a_side = 8;  // of a facet of the ground
 
-CrownShells no_crown() {
-  return {};
-}
-
 }  // namespace
 
 OccludedSky::OccludedSky(const FacetRows& rows, const std::vector<const Sky*>& skies, OcclusionModel model)
@@ -39,7 +35,7 @@ OccludedSky::OccludedSky(const FacetRows& rows, const std::vector<const Sky*>& s
 void OccludedSky::place_crowns(const FacetRows& rows) {
   const Scene& scene = rows.scene();
   const PlacedScene& placed = rows.placed();
-  crowns_.assign(scene.plants.size(), no_crown());
+  crowns_.assign(scene.plants.size(), CrownShells{});
   std::vector<bool> known(scene.plants.size(), false);
   std::vector<std::uint32_t> wanted;
   for (const auto& copy : placed.copies)
@@ -133,8 +129,7 @@ void OccludedSky::on_leaf(std::uint32_t shell, const Vec3& point, const Vec3& no
     for (std::size_t k = 0; k < n; ++k) {
       const auto& ambient = ambient_[shell * n + k];
       // Light that comes from above alone does not reach a side through all of the ball about its normal. What the side sees of it is about
-      // the sum of its normal and the light's mean direction: errors of random leaves at k R = 2 fall from 30 to 23 %, of
-      // which some 20 are the leaves' own chance.
+      // the sum of its normal and the light's mean direction: errors of random leaves at k R = 2 fall from 30 to 23 %.
       const Vec3 in_ball = normals_to_ball_[shell] * (model_ == OcclusionModel::table ? towards + ambient.mean_direction() : towards);
       const double length = glm::length(in_ball);
       const BallPlace place{std::min(radius, 1.0), length > 0.0 ? std::clamp(glm::dot(in_ball, out) / length, -1.0, 1.0) : 0.0};

@@ -31,11 +31,15 @@ struct LatticeSettings : SolveSettings {
 /// Bytes that the lattice of a scene holds at the most, besides what its facets take.
 std::uint64_t lattice_bytes(const Scene& scene, const FacetScene& facets, const LatticeSettings& settings);
 
+/// Throws what solve_lattice() cannot take: InputError for sensors and slopes, UsageError for a number of nodes, OutOfMemory. To be called
+/// before direct light is found.
+void check_lattice(const Scene& scene, const FacetScene& facets, const LatticeSettings& settings);
+
 /// Direct light, as a method that stops at it hands it over.
 struct DirectFacets {
   const KeptLight& light;                            ///< of all facets
   const std::vector<std::vector<Balance>>& balance;  ///< [s][b]; `incident`, `leaves` and `ground` are used
-  const RayScene& rays;                              ///< of the facets
+  const RayScene* rays;                              ///< of the facets, for mapping matched; else null
 };
 
 /// Scattered light on the D3Q19 lattice of Geist & Steele (2008; lattice.hpp), in steady state:
@@ -55,7 +59,7 @@ struct DirectFacets {
 ///    between 0 and phi / 2, so that both sides together have what the lattice says.
 ///
 /// Balance: what the lattice lost on its way to a facet's two sides (their optics may differ) is made up by one factor per state and band,
-/// Balance::scattered_scale. Throws InputError for scenes with sensors, OutOfMemory for lattices that do not fit.
+/// Balance::scattered_scale. For scenes that have passed check_lattice().
 SolveReport solve_lattice(const Scene& scene, const FacetScene& facets, const DirectFacets& direct, const LatticeSettings& settings,
                           IrradianceSink& sink, Progress& progress);
 
